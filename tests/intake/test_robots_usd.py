@@ -8,7 +8,7 @@ from typing import Any
 import newton
 import numpy as np
 import pytest
-from pxr import Usd, UsdGeom, UsdPhysics
+from pxr import Sdf, Usd, UsdGeom, UsdPhysics
 
 from wsim.intake.model import IntakeError
 from wsim.intake.robot_usd import read_usd_robot
@@ -191,3 +191,71 @@ def test_a_joint_from_either_end_keeps_its_coordinate(tmp_path: Path, flipped: b
     scene.robot("bot", tmp_path / "robot.usda", origin=True)
     body = describe(scene.stage).body("/World/bot/other")
     assert body.position == pytest.approx((0.2 + 0.2 * c, 0.0, -0.2 * s), abs=1e-6)
+
+
+def joined(path: Path, *joints: tuple[str, str, str], kind: str = "Revolute") -> Usd.Stage:
+    """Boxes of 1 kg side by side, the first one held, and joints of names between two of them."""
+    stage = Usd.Stage.CreateNew(str(path))
+    UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)
+    UsdGeom.SetStageMetersPerUnit(stage, 1.0)
+    stage.SetDefaultPrim(UsdGeom.Xform.Define(stage, "/r").GetPrim())
+    UsdPhysics.ArticulationRootAPI.Apply(stage.GetPrimAtPath("/r"))
+    names = list(dict.fromkeys(end for _, *ends in joints for end in ends))
+    for k, name in enumerate(names):
+        body = UsdGeom.Cube.Define(stage, f"/r/{name}")
+        body.CreateSizeAttr(0.1)
+        body.AddTranslateOp().Set((0.2 * k, 0.0, 0.0))
+        UsdPhysics.RigidBodyAPI.Apply(body.GetPrim())
+        UsdPhysics.MassAPI.Apply(body.GetPrim()).CreateMassAttr(1.0)
+    hold = UsdPhysics.FixedJoint.Define(stage, "/r/hold")
+    hold.CreateBody1Rel().SetTargets([f"/r/{names[0]}"])
+    for place, one, other in joints:
+        joint = getattr(UsdPhysics, f"{kind}Joint").Define(stage, f"/r/{place}")
+        joint.CreateBody0Rel().SetTargets([f"/r/{one}"])
+        joint.CreateBody1Rel().SetTargets([f"/r/{other}"])
+        joint.CreateLocalPos0Attr((0.2 * (names.index(other) - names.index(one)), 0.0, 0.0))
+        joint.CreateAxisAttr("Y")
+    return stage
+
+
+def test_a_joint_that_is_switched_off_holds_nothing(tmp_path: Path) -> None:
+    stage = joined(tmp_path / "r.usda", ("hinge", "base", "arm"))
+    stage.Save()
+    held = read_usd_robot(tmp_path / "r.usda")
+    assert [joint.name for joint in held.joints] == ["hinge"] and not held.links[0].free
+    UsdPhysics.Joint(stage.GetPrimAtPath("/r/hold")).CreateJointEnabledAttr(False)
+    stage.Save()
+    assert read_usd_robot(tmp_path / "r.usda").links[0].free
+
+
+def test_what_is_left_out_of_the_articulation_closes_its_loop(tmp_path: Path) -> None:
+    """It stands first in the file, and the joints that make the tree are those that are not left out."""
+    stage = joined(tmp_path / "r.usda", ("loop", "base", "a"), ("first", "base", "b"), ("second", "b", "a"))
+    UsdPhysics.Joint(stage.GetPrimAtPath("/r/loop")).CreateExcludeFromArticulationAttr(True)
+    stage.Save()
+    robot = read_usd_robot(tmp_path / "r.usda")
+    assert {joint.name for joint in robot.joints} == {"first", "second"}
+    assert "not carried: joints that close a loop" in robot.notes
+
+
+def test_two_joints_of_one_name_are_refused(tmp_path: Path) -> None:
+    stage = joined(tmp_path / "r.usda", ("left/elbow", "base", "a"), ("right/elbow", "base", "b"))
+    stage.Save()
+    with pytest.raises(IntakeError, match="two joints of the name elbow; rename one"):
+        read_usd_robot(tmp_path / "r.usda")
+
+
+def test_one_limit_is_carried_and_no_speed_limit_is_none(tmp_path: Path) -> None:
+    stage = joined(tmp_path / "r.usda", ("hinge", "base", "arm"))
+    UsdPhysics.RevoluteJoint(stage.GetPrimAtPath("/r/hinge")).CreateLowerLimitAttr(-30.0)
+    name, kind = "physxJoint:maxJointVelocity", Sdf.ValueTypeNames.Float
+    stage.GetPrimAtPath("/r/hinge").CreateAttribute(name, kind).Set(1e6)
+    stage.Save()
+    robot = read_usd_robot(tmp_path / "r.usda")
+    (joint,) = robot.joints
+    assert joint.fastest is None and (joint.low, joint.high) == (pytest.approx(np.radians(-30.0)), None)
+    write_robot(tmp_path / "robot.usda", robot, "r")
+    written = Usd.Stage.Open(str(tmp_path / "robot.usda"))
+    (hinge,) = [UsdPhysics.RevoluteJoint(prim) for prim in written.Traverse() if prim.IsA(UsdPhysics.RevoluteJoint)]
+    assert hinge.GetLowerLimitAttr().Get() == pytest.approx(-30.0)
+    assert not np.isfinite(hinge.GetUpperLimitAttr().Get())

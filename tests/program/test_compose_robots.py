@@ -11,6 +11,7 @@ from wsim.plan.schema import Actuation, FromRobot, Material, Plan, PlanObject, P
 from wsim.program.compose import compose
 from wsim.scene import Scene
 from wsim.scene.describe import describe
+from wsim.scene.errors import SceneError
 
 
 def placed(id: str = "desk_arm", **more) -> PlanObject:
@@ -121,3 +122,33 @@ def test_robots_alone_reach() -> None:
             material=Material(name="tin", density=900.0),
             registration=Registration.model_validate({"actuation": REACHES[:1]}),
         )  # fmt: skip
+
+
+GOES = {"kind": "reach", "link": "hand", "path": [[0.3, 0.0, 0.2]]}
+GRIPS = {"kind": "schedule", "joint": "left_finger", "target": [0.03, 0.0]}
+
+
+@pytest.mark.parametrize(
+    ("actuations", "why"),
+    [
+        ([{**GOES, "times": [2.0]}, {**GOES, "times": [1.0]}], "1 s must be after 2 s, when it sets out"),
+        ([{**GOES, "times": [2.0]}, {**GOES, "times": [3.0], "start": 1.0}], "start: 1 s is before 2 s"),
+        ([{**GOES, "times": [0.0]}], "0 s must be after 0 s"),
+        ([{**GOES, "times": [1.0], "start": 2.0}], "1 s must be after 2 s"),
+        ([{**GRIPS, "times": [1.0, 2.0]}] * 2, "left_finger has a schedule already"),
+        ([{**GOES, "times": [6.0]}], "6 s is after the end, at 5 s"),
+        ([{**GOES, "times": [1.0]}, {"kind": "policy", "policy": "go2_walk"}], "a policy walks worker"),
+    ],
+)
+def test_what_a_robot_cannot_do_by_time_is_refused_in_the_plan(actuations: list, why: str) -> None:
+    own = Registration.model_validate({"actuation": actuations})
+    plan = {"title": "", "prompt": "", "objects": [placed(registration=own)], "simulation": {"duration": 5.0}}
+    with pytest.raises(ValueError, match=why):
+        Plan.model_validate(plan)
+
+
+def test_a_joint_has_one_schedule() -> None:
+    arm = Scene().robot("arm", "desk_arm")
+    arm.drive("left_finger", times=[0.0, 1.0], positions=[0.03, 0.0])
+    with pytest.raises(SceneError, match="left_finger has a schedule already"):
+        arm.drive("left_finger", times=[2.0, 3.0], positions=[0.0, 0.03])

@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from tests.assets import policies
 from tests.sim.test_policies import SIZE, own, spec
+from wsim.kernels.policy import set_targets
 from wsim.kernels.policy_network import dense
 from wsim.scene import Scene
 from wsim.sim import Simulation
@@ -193,6 +194,21 @@ def evaluated(found: list, x: np.ndarray, device: str) -> np.ndarray:
         wp.launch(dense, dim=y.shape, inputs=[*given, each.bend, each.alpha], outputs=[y], device=device)
         at = y
     return at.numpy()
+
+
+@pytest.mark.parametrize("device", ["cpu", GPU])
+@pytest.mark.parametrize("bend", [each for each in BENDS if each[0] != "Identity"], ids=lambda each: each[0])
+def test_what_is_no_number_goes_through_to_the_targets(tmp_path: Path, device: str, bend: tuple) -> None:
+    """A maximum would make a number of it, and a robot that sees nothing walk on."""
+    network = read_network(written(tmp_path, [("MatMul", {}, [np.eye(3)]), (*bend, [])]), 3, 3)
+    found = evaluated(layers_of(network, 3), np.array([[np.nan, 1.0, 2.0]], dtype=np.float32), device)
+    assert np.isnan(found).any()
+    action, target, moved = (wp.zeros(shape, dtype=float, device=device) for shape in ((1, 3), 3, (1, 3)))
+    own = [wp.array(each, dtype=float, device=device) for each in (found, np.ones(3), np.zeros(3))]
+    place = wp.array([[0, 1, 2]], dtype=int, device=device)
+    wp.launch(set_targets, dim=(1, 3), inputs=[own[0], 5.0, *own[1:], place], outputs=[action, target, moved],
+              device=device)  # fmt: skip
+    assert np.isnan(target.numpy()).any()
 
 
 def branched() -> bytes:

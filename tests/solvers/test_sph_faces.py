@@ -11,6 +11,7 @@ from wsim.geometry.filled import box_lattice
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
+from wsim.solvers.sph_faces import FixedFaces
 
 RHO, G, DP = 1000.0, 9.81, 0.03
 HOLLOW, WALL, LEVEL = np.array([14 * DP, 14 * DP, 10 * DP]), 2 * DP, 5 * DP
@@ -126,3 +127,12 @@ def test_a_drop_stays_where_it_falls():
     seconds = advance(solver, state, fall + 0.1)
     assert state.particle_q.numpy()[-1] == pytest.approx((2.5 + 0.3 * seconds, 2.5, 0.0), abs=1e-4)
     assert state.particle_qd.numpy()[-1] == pytest.approx((0.3, 0.0, 0.0), abs=0.02)
+
+
+@pytest.mark.parametrize(("floor", "held"), [(-3e-8, True), (0.0, True), (-0.2, False)])
+def test_a_tank_that_is_sunk_into_the_ground_has_its_own(floor: float, held: bool):
+    """What its floor is lower by in single precision alone is none."""
+    builder = newton.ModelBuilder(up_axis=newton.Axis.Z)
+    builder.add_ground_plane()
+    tank = OpenBox((0.0, 0.0, floor + 0.15), (0.3, 0.3, 0.3))
+    assert FixedFaces(builder.finalize(device="cpu"), 1, [tank]).count == int(held)

@@ -51,6 +51,9 @@ def read_usd_robot(path: Path) -> Robot:
     notes: list[str] = []
     tree = _Tree.of(stage, world, list(hinges_of(stage, world, notes)), notes)
     robot = tree.robot(stage)
+    called = [joint.name for joint in robot.joints]
+    if twice := sorted({name for name in called if called.count(name) > 1}):
+        raise IntakeError(f"file = {path.name} has two joints of the name {twice[0]}; rename one")
     robot.apart += _apart(stage, roots[0], world, tree, robot)
     robot.notes = list(dict.fromkeys([*notes, *_left_out(stage)]))
     return robot

@@ -92,22 +92,26 @@ def hinges_of(stage: Usd.Stage, world: World, notes: list[str]) -> Iterator[Hing
         world: What it states.
         notes: Told of what is not carried.
     """
-    several = [(joint.parent, joint.child) for joint in world.joints]
-    bodies = {body.prim: body for body in world.bodies}
-    for joint in world.joints:
+    bodies, known = {body.prim: body for body in world.bodies}, {joint.prim for joint in world.joints}
+    joints = [each for each in world.joints if _enabled(stage.GetPrimAtPath(each.prim))]
+    joints.sort(key=lambda each: each.closing)  # what a file leaves out of its articulation closes a loop, if one does
+    several = [(joint.parent, joint.child) for joint in joints]
+    for joint in joints:
         alone = several.count((joint.parent, joint.child)) == 1
         at = coordinate(joint, bodies) if alone and joint.kind in ("revolute", "prismatic") else 0.0
         made = _plain(stage.GetPrimAtPath(joint.prim), joint, at)
         yield _scaled(stage, made)
-    known = {joint.prim for joint in world.joints}
     for prim in stage.Traverse():
-        joint = UsdPhysics.Joint(prim)
-        if not prim.IsA(UsdPhysics.Joint) or str(prim.GetPath()) in known or not joint.GetJointEnabledAttr().Get():
+        if not prim.IsA(UsdPhysics.Joint) or str(prim.GetPath()) in known or not _enabled(prim):
             continue
         if prim.GetTypeName() == "PhysicsJoint":
             yield from (_scaled(stage, made) for made in _open(prim, bodies))
         else:
             notes.append(f"not carried: joints of the kind {prim.GetTypeName()}")
+
+
+def _enabled(joint: Usd.Prim) -> bool:
+    return bool(UsdPhysics.Joint(joint).GetJointEnabledAttr().Get())
 
 
 def _plain(prim: Usd.Prim, joint: Joint, at: float) -> Hinge:
@@ -187,8 +191,8 @@ def _motor(prim: Usd.Prim, axis: str, kind: str) -> Motor | None:
 
 def _fastest(prim: Usd.Prim, kind: str) -> float | None:
     unit = math.pi / 180.0 if kind == "revolute" else 1.0
-    found = [_number(prim, name) * unit for name in ("newton:velocityLimit", "physxJoint:maxJointVelocity")]
-    return next((each for each in found if 0.0 < each < 1e5), None)  # PhysX's own stands for none
+    found = [_number(prim, name) for name in ("newton:velocityLimit", "physxJoint:maxJointVelocity")]
+    return next((each * unit for each in found if 0.0 < each < 1e5), None)  # PhysX's own, 1e6, stands for none
 
 
 def _number(prim: Usd.Prim, name: str) -> float:

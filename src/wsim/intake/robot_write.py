@@ -162,8 +162,9 @@ def _joint(stage: Usd.Stage, joint: RobotJoint, links: dict[str, Link]) -> None:
     made.CreateAxisAttr("X")
     if joint.kind == "spherical":
         return
-    if joint.low is not None and joint.high is not None:
+    if joint.low is not None:
         made.CreateLowerLimitAttr(joint.low * unit)
+    if joint.high is not None:
         made.CreateUpperLimitAttr(joint.high * unit)
     prim = made.GetPrim()
     prim.AddAppliedSchema("NewtonJointAPI")

@@ -43,6 +43,14 @@ def feel_base(
     where[world] = wp.vec3(at[0], at[1], wp.atan2(forward[1], forward[0]))
 
 
+@wp.func
+def cut(x: float, limit: float) -> float:
+    """A number cut off at a limit, either way; what is none stays none, so that the run is seen to have failed."""
+    if wp.isnan(x):
+        return x
+    return wp.clamp(x, -limit, limit)
+
+
 @wp.kernel(enable_backward=False)
 def observe(
     # Data in:
@@ -73,7 +81,7 @@ def observe(
         value = joint_qd[dof[world, at]]
     else:
         value = action[world, at]
-    seen[world, entry] = wp.clamp(scale[entry] * (value - offset[entry]), -limit, limit)
+    seen[world, entry] = cut(scale[entry] * (value - offset[entry]), limit)
 
 
 @wp.kernel(enable_backward=False)
@@ -91,7 +99,7 @@ def set_targets(
 ):
     """Set the servos to offset + scale action."""
     world, joint = wp.tid()
-    own = wp.clamp(made[world, joint], -limit, limit)
+    own = cut(made[world, joint], limit)
     action[world, joint] = own
     goal = offset[joint] + scale[joint] * own
     at = place[world, joint]

@@ -16,6 +16,8 @@ SOFTPLUS = wp.constant(6)
 def bent(x: float, bend: int, alpha: float) -> float:
     """The function of a layer's output, by its number; alpha is that of ELU and of the leaky ReLU."""
     found = x
+    if wp.isnan(x):  # a maximum would hide it
+        return x
     if bend == RELU:
         found = wp.max(x, 0.0)
     elif bend == ELU and x < 0.0:

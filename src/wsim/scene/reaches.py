@@ -27,6 +27,8 @@ def write_schedule(call: Call, joint: Usd.Prim, times: list[float], positions: l
     """
     if len(times) != len(positions):
         call.fail(f"times has {len(times)} entries and positions {len(positions)}; give as many of both")
+    if schema.has(joint, schema.SCHEDULE):
+        call.fail(f"{joint.GetName()} has a schedule already; put both their times and positions into one call")
     schema.apply(joint, schema.SCHEDULE, {
         "times": (_NAMES.DoubleArray, Vt.DoubleArray(times)),
         "positions": (_NAMES.DoubleArray, Vt.DoubleArray(positions)),

@@ -14,6 +14,7 @@ from wsim.kernels.sph.faces import keep_out
 from wsim.solvers.shapes import OpenBox
 
 Array = np.ndarray
+SUNK = 1e-4  # [m] under a plane, at least, of the floor of a tank that is sunk into it
 CORNERS = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
 
 
@@ -41,9 +42,8 @@ class FixedFaces:
         normals = rotate(poses[:, 3:], np.array([[0.0, 0.0, 1.0]])) if len(poses) else np.zeros((0, 3))
         heights = (normals * poses[:, :3]).sum(axis=1)
         endless = (kinds == GeoType.PLANE) & (halves[:, :2] == 0.0).all(axis=1)
-        planes = [
-            (w, k) for w, k in self._homes(fixed & endless) if not (normals[k][2] > 0.99 and floors[w] < heights[k])
-        ]
+        sunk = (normals[:, 2] > 0.99)[None] & (floors[:, None] < heights[None] - SUNK)
+        planes = [(w, k) for w, k in self._homes(fixed & endless) if not sunk[w, k]]
         boxes = self._homes(fixed & (kinds == GeoType.BOX))
         self._planes = (
             self._first(planes),

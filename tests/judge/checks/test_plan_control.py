@@ -64,23 +64,52 @@ TIMED = [
     ({"kind": "reach", "link": "hand", "path": [[0.3, 0.0, 0.2]], "times": [1.0]}, "reach"),
     ({"kind": "schedule", "joint": "grip", "target": [0.03, 0.0], "times": [1.0, 2.0]}, "schedule"),
 ]
+REACH = Reach(
+    prim="/World/arm/reaches/reach_0", link="/World/arm/hand", times=[1.0], positions=[(0.3, 0.0, 0.2)], straight=False
+)
+GRIP = Schedule(prim="/World/arm/joints/grip", times=[1.0, 2.0], positions=[0.03, 0.0])
+SLIDER = Joint(prim="/World/arm/joints/grip", kind="prismatic", parent="/World/arm/hand", child="/World/arm/finger")
+
+
+def by_time(actuations, controlled=False, **stage):
+    """What is found of an arm that does this by the plan, and that on the stage."""
+    arm = PlanObject(
+        name="arm", role="robot", construction=FromRobot(robot="desk_arm", size=(0.3, 0.3, 0.5)),
+        registration=Registration.model_validate({"actuation": actuations}),
+    )  # fmt: skip
+    world = with_world(a_world(), joints=[SLIDER], **stage)
+    world.metadata["controlled"] = world.metadata["steered"] = controlled
+    return ask(CheckPlanControl(), world, Plan(title="", prompt="", objects=[arm]))
 
 
 @pytest.mark.parametrize(("actuation", "kind"), TIMED)
 def test_what_a_plan_lets_a_robot_do_by_time_is_on_the_stage(actuation, kind):
-    arm = PlanObject(
-        name="arm", role="robot", construction=FromRobot(robot="desk_arm", size=(0.3, 0.3, 0.5)),
-        registration=Registration.model_validate({"actuation": [actuation]}),
-    )  # fmt: skip
-    plan = Plan(title="", prompt="", objects=[arm])
-    reach = Reach(prim="/World/arm/reaches/reach_0", link="/World/arm/hand", times=[1.0], positions=[(0.3, 0.0, 0.2)])
-    grip = Schedule(prim="/World/arm/joints/grip", times=[1.0, 2.0], positions=[0.03, 0.0])
-    both = with_world(a_world(), reaches=[reach], schedules=[grip])
-    assert all(each.passed for each in ask(CheckPlanControl(), both, plan))
-    elsewhere = with_world(
-        a_world(), reaches=[reach.model_copy(update={"link": "/World/arm/wrist"})],
-        schedules=[grip.model_copy(update={"prim": "/World/other/joints/grip"})],
-    )  # fmt: skip
-    (found,) = ask(CheckPlanControl(), elsewhere, plan)
-    assert (found.passed, found.message) == (False, f"The plan has a {kind} of arm, and the stage has none")
-    assert (found.target.kind, found.target.parameter) == ("controller", kind)
+    stage = {"reaches": [REACH]} if kind == "reach" else {"schedules": [GRIP]}
+    assert all(each.passed for each in by_time([actuation], **stage))
+    for unlike in (
+        {"reaches": [REACH.model_copy(update={"link": "/World/arm/wrist"})]},
+        {"reaches": [REACH.model_copy(update={"positions": [(0.3, 0.0, 0.25)]})]},
+        {"reaches": [REACH.model_copy(update={"times": [2.0]})]},
+        {"schedules": [GRIP.model_copy(update={"prim": "/World/other/joints/grip"})]},
+        {"schedules": [GRIP.model_copy(update={"positions": [0.0, 0.0]})]},
+        {},
+    ):
+        (found,) = by_time([actuation], **unlike)
+        assert (found.passed, found.message) == (False, f"The plan has a {kind} of arm that the stage has not")
+        assert (found.target.kind, found.target.parameter) == ("controller", kind)
+
+
+@pytest.mark.parametrize("stage", [{"reaches": [REACH]}, {"schedules": [GRIP]}])
+def test_what_a_stage_does_by_time_is_the_plans(stage):
+    (found,) = by_time([], **stage)
+    assert not found.passed and "by time, and the plan does not" in found.message
+    assert (found.target.kind, found.target.direction) == ("controller", "remove")
+
+
+def test_what_is_done_by_time_makes_no_control_legal():
+    """A motion that is left off the stage is no reason for a program's own hands."""
+    actuations = [actuation for actuation, _ in TIMED]
+    both = {"reaches": [REACH], "schedules": [GRIP]}
+    assert all(each.passed for each in by_time(actuations, **both))
+    for stage in (both, {"reaches": [REACH]}):
+        assert not all(each.passed for each in by_time(actuations, controlled=True, **stage))

@@ -155,7 +155,7 @@ def _drifts(
     steady = gone.min(axis=1) > EACH * length / INTERVALS
     steady &= (rate > np.maximum(CREEP, _soft(copies, touching, contacts, copy[at], at))) & (rate < 2.0 * STILL)
     steady &= length > INTERVALS * rounding
-    steady &= rate > _behind(copies, paths, (time[frames[:, -1]] - time[firsts])[at])
+    steady &= rate > _behind(copies, copy[at], paths, (time[frames[:, -1]] - time[firsts])[at])
     relative, absolute = _turned(contacts, at, q)
     steady &= (relative < TURN) & (absolute < ROUND)
     # Resisted rolling shares the cone with the slip, and goes with one: friction is then inside it.
@@ -166,7 +166,7 @@ def _drifts(
     return np.where(steady[:, None], drift, 0.0)
 
 
-def _behind(copies: Sequence[Evidence], paths: Sequence[Floats], span: Floats) -> Floats:
+def _behind(copies: Sequence[Evidence], copy: NDArray[np.intp], paths: Sequence[Floats], span: Floats) -> Floats:
     """The slip that steps leave between what is led round and what it carries, (n,) [m/s].
 
     Steps of the first order take what goes at v from one to the next by the velocity at the end, those of the second by
@@ -175,12 +175,14 @@ def _behind(copies: Sequence[Evidence], paths: Sequence[Floats], span: Floats) -
 
     Args:
         copies: Of similar worlds, over the same times.
+        copy: Whose each contact is, (n,).
         paths: Of the points of both bodies at each contact, (n, F, 3) each [m].
         span: How long these are, (n,) [s].
     """
     middle = paths[0].shape[1] // 2
     bends = [lengths(path[:, 0] - 2.0 * path[:, middle] + path[:, -1]) for path in paths]
-    found: Floats = ORDERS * latest(copies[0]) * np.maximum(*bends) / (0.5 * span) ** 2
+    late = np.array([latest(evidence) for evidence in copies])
+    found: Floats = ORDERS * late[copy] * np.maximum(*bends) / (0.5 * span) ** 2
     return found
 
 

@@ -85,8 +85,8 @@ class RecordedBlows:
     def _unseen(self) -> Floats:
         """An impulse that is lost in the rounding of its bodies' momentum, (n,) [N s]: what grazes has any normal."""
         bodies, motion = self._contacts.body, self._motion
-        momentum = motion.mass * motion.speed[self._contacts.track.frame]  # (n, B)
-        of_each = np.take_along_axis(momentum, np.maximum(bodies, 0), axis=1)
+        rows = np.maximum(bodies, 0)
+        of_each = motion.mass[rows] * motion.speed[self._contacts.track.frame[:, None], rows]
         return np.asarray(UNSEEN * FLOAT32 * np.where(bodies >= 0, of_each, 0.0).max(axis=1))
 
     @cached_property

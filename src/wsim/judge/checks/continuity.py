@@ -68,7 +68,9 @@ class CheckContinuity(Check):
 
     def prepare(self, joined: Evidence, copies: Sequence[Evidence]) -> None:
         """What is asked of all copies at once."""
-        if len(joined.motion.h) and joined.world.bodies and not joined.world.joints and not joined.world.springs:
+        world = joined.world
+        tied = world.joints or world.springs or world.ropes
+        if len(joined.motion.h) and world.bodies and not tied:
             asked = self._asked(joined)
             for n, evidence in enumerate(copies):
                 evidence.kept[CheckContinuity] = tuple((value[n], limit[n]) for value, limit in asked)

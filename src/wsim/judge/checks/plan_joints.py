@@ -156,8 +156,11 @@ class CheckPlanJoints(Check):
     def _drive(self, evidence: Evidence, made: Joint, planned: PlanJoint) -> Iterator[Finding]:
         """What the joint's drive is set to, and how strongly it acts, against the plan's."""
         wanted = planned.drive
-        # What a controller sets or does itself is not to be read off the stage.
-        if evidence.recording.metadata.get("controlled"):
+        # What a program's control, or a policy, sets or does itself is not to be read off the stage.
+        facts = evidence.recording.metadata
+        if facts.get("steered", facts.get("controlled")) or any(
+            made.prim in policy.joints for policy in evidence.world.policies
+        ):
             return
         if wanted is None:
             yield from self._actuated(evidence, made, planned)

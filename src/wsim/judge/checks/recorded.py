@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
 
+LEANS = 0.97  # of the length of a mean normal: those of its points lean apart along a slip by 14 degrees at most
+
 
 @dataclass
 class CheckRecordedForces(Check):
@@ -129,8 +131,9 @@ class CheckRecordedForces(Check):
         rubs = np.einsum("ni,ni->n", (track.impulse - track.along)[rows].astype(np.float64), -way) / pressed[rows]
         friction, (least, most) = contacts.friction[rows], contacts.rubs(normal, speed)[:, rows]
         resists = least < friction
-        # Of points whose normals lean apart along the slip, as a box's on a hill, friction leans as they do.
-        least = least * np.minimum(np.linalg.norm(normal[rows], axis=1), 1.0)
+        # Of points whose normals lean apart along the slip, as a box's on a hill, friction leans as they do. Across it,
+        # as in a trough, they may lean by more and take nothing, and a mean does not tell which.
+        least = least * np.clip(np.linalg.norm(normal[rows], axis=1), LEANS, 1.0)
         turned = contacts.swing(normal, speed.min(axis=1))[rows]
         round_ = 1.0 - np.sqrt(1.0 - aside[rows] ** 2)
         slack = (self.edge + 1.0 - cosine[rows] + 0.5 * turned**2 + round_) * friction + self.cone

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.checks.check import Check, Checks
+from wsim.judge.checks.plan_control import CheckPlanControl
 from wsim.judge.repair.rule import longer_run, unstable
 from wsim.judge.verdict import RepairTarget
 from wsim.scene.contact import within
@@ -15,7 +16,6 @@ from wsim.scene.contact import within
 if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
-    from wsim.plan.schema import Actuation
 
 
 @dataclass
@@ -219,88 +219,6 @@ def _linked(evidence: Evidence, whole: str) -> bool:
     links = {body.prim for body in evidence.world.bodies if within(body.prim, whole)}
     held = [joint for joint in evidence.world.joints if within(joint.prim, whole)]
     return len(links) > 1 and links <= {end for joint in held for end in (joint.parent, joint.child)}
-
-
-_TIMED = ("reach", "follow", "schedule")  # kinds of actuation
-
-
-@dataclass
-class CheckPlanControl(Check):
-    """A world is steered by `control` where the plan asks for it, and only there: unseen hands could do anything."""
-
-    def evaluate(self, evidence: Evidence) -> list[Finding]:
-        """One finding where the plan asks for control or the program has one, none for another world."""
-        plan, facts = evidence.plan, evidence.recording.metadata
-        controlled = bool(facts.get("steered", facts.get("controlled")))
-        if plan is None:
-            return []
-        driven = {joint.prim for joint in evidence.world.joints if joint.drive is not None}
-        asked = [
-            item.name
-            for item in plan.objects
-            for each in item.registration.actuation
-            if each.kind != "drive" and not _by_time(evidence, item.name, each)  # that is set on the stage
-            if each.joint is None or evidence.prim(each.joint) not in driven  # else its drive does it
-            if controlled or not _by_policy(evidence, item.name, each.joint)
-        ]
-        asked += [step.title for step in plan.steps if step.asks_for_control]
-        idle = [
-            item.name
-            for item in plan.objects
-            if not controlled and any(each.policy for each in item.registration.actuation)
-            and not _by_policy(evidence, item.name, None)
-        ]  # fmt: skip
-        if idle:
-            target = RepairTarget(kind="controller", prim=evidence.prim(idle[0]), parameter="policy", direction="add")
-            return [self.failed(f"The plan lets a policy walk {idle[0]}, and none does", target=target)]
-        late = [
-            (item.name, each.kind)
-            for item in plan.objects
-            for each in item.registration.actuation
-            if not controlled and each.kind in _TIMED and not _by_time(evidence, item.name, each)
-        ]
-        if late:
-            name, kind = late[0]
-            target = RepairTarget(kind="controller", prim=evidence.prim(name), parameter=kind, direction="add")
-            return [self.failed(f"The plan has a {kind} of {name}, and the stage has none", target=target)]
-        if bool(asked) == controlled:
-            return [self.passed(f"The plan asks for control: {asked[0]}")] if asked else []
-        message = (
-            "The program's control acts on the world, and the plan asks for none: what happens may be its doing"
-            if controlled
-            else f"The plan asks for control ({asked[0]}), and the program has no control(world, t)"
-        )
-        return [
-            self.failed(
-                message,
-                limit_from="a step that names control, or an object's actuation",
-                target=RepairTarget(
-                    kind="controller", parameter="control", direction="remove" if controlled else "add"
-                ),
-            )
-        ]
-
-
-def _by_time(evidence: Evidence, name: str, actuation: Actuation) -> bool:
-    """Whether the stage says by time what the plan lets a robot's link or joint do."""
-    robot, world = evidence.prim(name), evidence.world
-    if actuation.kind == "schedule":
-        return any(each.prim == f"{robot}/joints/{actuation.joint}" for each in world.schedules)
-    return actuation.kind in ("reach", "follow") and any(
-        each.link == f"{robot}/{actuation.link}" for each in world.reaches
-    )
-
-
-def _by_policy(evidence: Evidence, name: str, joint: str | None) -> bool:
-    """Whether a policy sets a joint of the plan; without a joint, whether it has the object, or a part of it."""
-    world = evidence.world
-    if joint is not None:
-        return any(evidence.prim(joint) in policy.joints for policy in world.policies)
-    parts = {policy.base for policy in world.policies}
-    for each in world.joints:
-        if any(each.prim in policy.joints for policy in world.policies):
-            parts |= {each.child} if each.parent is None else {each.parent, each.child}
-    return any(within(part, evidence.prim(name)) for part in parts)
 
 
 CHECKS: Checks = (CheckFinite, CheckComplete, CheckLog, CheckPlanObjects, CheckPlanControl)

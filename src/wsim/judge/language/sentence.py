@@ -166,7 +166,7 @@ class _Build(Transformer[Token, Any]):
         each = [
             (key, one)
             for key, value in arguments
-            for one in (value if key is None and isinstance(value, tuple) and isinstance(value[0], str) else [value])
+            for one in (value if key is None and _listed(value) and "objects" in kind.model_fields else [value])
         ]
         return kind.model_validate(bind(kind, tuple(each)))
 
@@ -211,6 +211,10 @@ class _Build(Transformer[Token, Any]):
                 windows.append(window)
                 window = None
         return Then(events=tuple(events), windows=tuple(windows))
+
+
+def _listed(value: Any) -> bool:
+    return isinstance(value, tuple) and isinstance(value[0], str)
 
 
 def bind(kind: type[Predicate], arguments: tuple[tuple[str | None, Any], ...]) -> dict[str, Any]:

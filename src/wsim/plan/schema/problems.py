@@ -31,6 +31,7 @@ def problems(plan: Draft) -> list[str]:
         *_joints(plan),
         *_contacts(plan),
         *_actuation(plan),
+        *_by_time(plan),
         *land_problems(plan),
         *_others(plan),
     ]
@@ -208,6 +209,31 @@ def _actuation(plan: Draft) -> Iterator[str]:
                 yield f"{where}: no joint {actuation.joint!r}; the plan has {', '.join(joints) or 'none'}"
             elif actuation.joint is not None and joints[actuation.joint].drive is not None:
                 yield f"{where}: {actuation.joint} has a drive; remove it, or this actuation: one thing drives a joint"
+
+
+def _by_time(plan: Draft) -> Iterator[str]:
+    """What a robot does by time comes in order, each joint by one schedule, and ends before the world does."""
+    for i, item in enumerate(plan.objects):
+        done, scheduled = 0.0, set[str]()
+        for j, each in enumerate(item.registration.actuation):
+            where = f"objects.{i}.registration.actuation.{j}"
+            if not each.times:
+                continue
+            if each.times[-1] > plan.simulation.duration:
+                yield f"{where}.times: {each.times[-1]:g} s is after the end, at {plan.simulation.duration:g} s"
+            if each.kind == "schedule":
+                if each.joint in scheduled:
+                    yield f"{where}.joint: {each.joint} has a schedule already; put their targets and times into one"
+                scheduled.add(str(each.joint))
+                continue
+            starts = done if each.start is None else each.start
+            if starts < done:
+                yield f"{where}.start: {starts:g} s is before {done:g} s, when the one before is done"
+            elif each.times[0] <= starts:
+                yield f"{where}.times: {each.times[0]:g} s must be after {starts:g} s, when it sets out"
+            done = max(done, each.times[-1])
+        if done and any(each.policy for each in item.registration.actuation):
+            yield f"objects.{i}.registration.actuation: a policy walks {item.name}; what it walks reaches for nothing"
 
 
 def _goes(item: PlanObject) -> bool:
