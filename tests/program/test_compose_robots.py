@@ -152,3 +152,6 @@ def test_a_joint_has_one_schedule() -> None:
     arm.drive("left_finger", times=[0.0, 1.0], positions=[0.03, 0.0])
     with pytest.raises(SceneError, match="left_finger has a schedule already"):
         arm.drive("left_finger", times=[2.0, 3.0], positions=[0.0, 0.03])
+    with pytest.raises(SceneError, match="left_finger has a schedule, which says where it goes"):
+        arm.drive("left_finger", position=0.02)
+    arm.drive("left_finger", stiffness=500.0)

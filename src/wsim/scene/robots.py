@@ -10,6 +10,7 @@ from pathlib import Path
 
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics
 
+from wsim.scene import schema
 from wsim.scene.articulation import mark_articulations
 from wsim.scene.authoring import Author, Handle, calling_folder, note_line, rotation, set_pose, world_pose
 from wsim.scene.reaches import rising, write_reach, write_schedule
@@ -114,6 +115,8 @@ class Robot(Handle):
                     f"{prim.GetName()}: its file has no servo for that; give a stiffness and a damping, or of a "
                     "velocity a damping"
                 )
+            if (position, velocity) != (None, None) and schema.has(prim, schema.SCHEDULE):
+                call.fail(f"{prim.GetName()} has a schedule, which says where it goes; leave position and velocity out")
             unit = math.pi / 180.0 if is_angular(prim) else 1.0
             start = float(prim.GetCustomDataByKey(f"{ROBOT}Start") or 0.0)
             goal = start if position is None else call.within("position", position, -36000.0, 36000.0) * unit
