@@ -5,8 +5,10 @@ surface the shape (an edge's end). An edge between faces of one plane is none, s
 
 A surface whose corners have normals is a curved one, of the second order: a point q of a triangle is lifted to the mean
 of its projections on the tangent planes at the corners, half of the way (Boubekeur and Alexa, Phong tessellation, 2008:
-half is a circle's arc). Its normal is that of the surface so made, along which the gap grows, so that a push does no
-work on what keeps its gap; the corners' normals, interpolated, lean from it where the bend changes along the triangle.
+half is a circle's arc). The normal that a ball touches with is that of the surface so made, along which the gap grows,
+so that a push does no work on what keeps its gap; the corners' normals, interpolated, lean from it where the bend
+changes along the triangle. These push what has corners: where triangles meet at large angles, they alone go over from
+one to the next without a jump.
 Its curvature makes a gap that closes along a straight way:
 of the speed v along it the gap has lost v^2 / (2 R) h^2 at the end of a step of h. So what goes along a curve is asked
 for a speed from the surface of v^2 h / (2 R) at a step's end, as it has one of that into the surface at its start:
@@ -99,6 +101,15 @@ def _shares(a: wp.vec3, b: wp.vec3, c: wp.vec3, normal: wp.vec3, q: wp.vec3) -> 
 
 
 @wp.func
+def _fall(own: wp.vec3, normal: wp.vec3, ball: bool) -> wp.vec3:
+    """How a corner's tangent plane falls from it along the triangle: of a ball exactly, else of the first order."""
+    upright = wp.dot(own, normal)
+    if ball:
+        return -own / wp.max(upright, STEEPEST)
+    return -own * upright
+
+
+@wp.func
 def _slope(
     turned: wp.vec3, way: wp.vec3, shares: wp.vec3, lifts: wp.vec3, s0: wp.vec3, s1: wp.vec3, s2: wp.vec3
 ) -> float:
@@ -188,6 +199,7 @@ def _touch_face(
     m2 = side * surface.normals[face, 2]
     normal = side * normal
     local_up = wp.quat_rotate_inv(wp.transform_get_rotation(pose), normal)
+    ball = shape.kind == SPHERE
     for k in range(corner_count(shape)):
         centre = wp.transform_point(pose, corner_centre(shape, corners, k))
         arm = wp.transform_vector(pose, corner_arm(shape, k, local_up))
@@ -207,15 +219,17 @@ def _touch_face(
             t2 = _shares(a, b, c, side * normal, a + e2) - wp.vec3(1.0, 0.0, 0.0)
             n1 = t1[0] * m0 + t1[1] * m1 + t1[2] * m2
             n2 = t2[0] * m0 + t2[1] * m1 + t2[2] * m2
-            s0 = -m0 / wp.max(wp.dot(m0, normal), STEEPEST)
-            s1 = -m1 / wp.max(wp.dot(m1, normal), STEEPEST)
-            s2 = -m2 / wp.max(wp.dot(m2, normal), STEEPEST)
+            s0 = _fall(m0, normal, ball)
+            s1 = _fall(m1, normal, ball)
+            s2 = _fall(m2, normal, ball)
             for _step in range(FOOT_STEPS):
                 lifts = 0.5 * wp.vec3(wp.dot(q - a, s0), wp.dot(q - b, s1), wp.dot(q - c, s2))
                 foot = q + wp.dot(shares, lifts) * normal
                 rise1 = _slope(t1, e1, shares, lifts, s0, s1, s2)
                 rise2 = _slope(t2, e2, shares, lifts, s0, s1, s2)
                 up = wp.normalize(normal - rise1 * e1 - rise2 * e2)
+                if not ball:
+                    up = wp.normalize(shares[0] * m0 + shares[1] * m1 + shares[2] * m2)
                 miss = p - foot
                 above = wp.dot(miss, up)
                 miss = miss - above * up

@@ -226,11 +226,12 @@ def _over_faces(mesh: Triangles, faces: Rows, points: Floats, rounded: float, re
     fronted = ~_behind(corners, normals, face, at, gap)
     face, shares, gap, at = face[fronted], shares[fronted], gap[fronted], at[fronted]
     normal = normals[face]
+    at = at - 0.5 * gap[:, None] * normal
     if mesh.smooth is not None:
-        foot, curved = _lifted(corners[face], normal, mesh.smooth[faces][face], at - gap[:, None] * normal)
+        curved = np.einsum("nk,nki->ni", shares, mesh.smooth[faces][face])
+        curved /= np.maximum(np.linalg.norm(curved, axis=1, keepdims=True), 1e-12)
         at, normal = at + rounded * (normal - curved), curved  # what is round touches where its side has the normal
-        gap = np.einsum("ni,ni->n", at - foot, curved)
-    return Near(at - 0.5 * gap[:, None] * normal, normal, gap)
+    return Near(at, normal, gap)
 
 
 def _lifted(corners: Floats, normals: Floats, own: Floats, at: Floats) -> tuple[Floats, Floats]:
