@@ -197,12 +197,15 @@ def test_what_walks_or_drives_costs_milliseconds_a_step(name: str, steps: int) -
     assert 2.5e-3 < cost.wall / cost.steps < 5e-3
 
 
-def test_there_are_seven_plans_written_by_hand() -> None:
+def test_there_are_ten_plans_written_by_hand() -> None:
     assert [path.stem for path in EXAMPLES] == [
         "buggy_floating_bridge",
+        "go2_kerbs",
         "go2_office",
+        "go2_pushed",
         "hmmwv_offroad",
         "offroad_vehicle",
+        "pick_and_place",
         "polaris_crossing",
         "quadruped_office",
         "wood_afloat",
