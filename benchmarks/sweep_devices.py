@@ -2,9 +2,12 @@
 
     .venv/bin/python benchmarks/sweep_devices.py --devices cuda:0 cuda:0,cuda:1 --count 16384
     .venv/bin/python benchmarks/sweep_devices.py --devices cpu --workers 1 2 --count 64
+    .venv/bin/python benchmarks/sweep_devices.py --devices cuda:0 cuda:0,cuda:1 --count 256 \\
+        --program examples/wood_afloat.py --plan examples/plans/wood_afloat.json \\
+        --vary density=250:1000 level=0.04:0.12 spacing=0.0125
 
-Five boxes and a ball on the ground, whose sizes, masses, friction and speeds are drawn. Each sweep starts its workers
-anew; a small one before them compiles the kernels.
+By default five boxes and a ball on the ground, whose sizes, masses, friction and speeds are drawn. Each sweep starts
+its workers anew; a small one before them compiles the kernels.
 """
 
 from __future__ import annotations
@@ -16,6 +19,7 @@ import tempfile
 import time
 from collections import Counter
 from pathlib import Path
+from typing import Any
 
 from wsim.sweep import Axis, Spec, SweepFolder, sweep
 
@@ -25,9 +29,9 @@ sys.path[:0] = [str(ROOT)] if str(ROOT) not in sys.path else []
 from benchmarks.sweep_setup import AXES, PROGRAM  # noqa: E402 - found from wherever this is called
 
 
-def seconds(program: Path, spec: Spec, workers: int, ray: str) -> float:
+def seconds(scratch: Path, program: Path, plan: str | None, spec: Spec, workers: int, ray: str) -> float:
     """What a sweep takes [s]; how its candidates came out is printed."""
-    folder = SweepFolder.create(program.parent / "runs", "devices", spec, [program])
+    folder = SweepFolder.create(scratch / "runs", "devices", spec, [program], plan)
     started = time.perf_counter()
     found = sweep(folder, workers, ray=ray)
     took = time.perf_counter() - started
@@ -38,6 +42,9 @@ def seconds(program: Path, spec: Spec, workers: int, ray: str) -> float:
 def main() -> None:
     """Print candidates a second for each."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", type=Path, help="with scene.param; by default five boxes and a ball")
+    parser.add_argument("--vary", nargs="+", default=list(AXES), help="as of wsim sweep; needed with --program")
+    parser.add_argument("--plan", type=Path, help="what the worlds are held to besides")
     parser.add_argument("--devices", nargs="+", default=["cpu"], help="each as `wsim sweep --device` takes it")
     parser.add_argument("--workers", nargs="+", type=int, default=[0])
     parser.add_argument("--count", type=int, default=64)
@@ -45,15 +52,22 @@ def main() -> None:
     parser.add_argument("--worlds", type=int, default=0, help="at once, as `wsim sweep --worlds` takes it")
     parser.add_argument("--ray", default="", help="a cluster, as `wsim sweep --ray` takes it")
     given = parser.parse_args()
-    with tempfile.TemporaryDirectory() as scratch:
-        program = Path(scratch) / "program.py"
-        program.write_text(PROGRAM.replace("SECONDS", f"{given.seconds:g}"), encoding="utf-8")
-        axes, first = [Axis.parse(axis) for axis in AXES], None
+    with tempfile.TemporaryDirectory() as folder:
+        scratch = Path(folder)
+        program = given.program or scratch / "program.py"
+        if given.program is None:
+            program.write_text(PROGRAM.replace("SECONDS", f"{given.seconds:g}"), encoding="utf-8")
+        plan = given.plan and given.plan.read_text(encoding="utf-8")
+        axes, first = [Axis.parse(axis) for axis in given.vary], None
         spec = Spec(axes=axes, samples=given.count - 1, worlds=given.worlds)
+
+        def takes(workers: int, **changes: Any) -> float:
+            return seconds(scratch, program, plan, spec.model_copy(update=changes), workers, given.ray)
+
         for device in given.devices:
-            seconds(program, spec.model_copy(update={"samples": 3, "device": device}), 0, given.ray)
+            takes(0, samples=3, device=device)
         for device, workers in itertools.product(given.devices, given.workers):
-            took = seconds(program, spec.model_copy(update={"device": device}), workers, given.ray)
+            took = takes(workers, device=device)
             first = first or took
             print(
                 f"{device}, {workers or 'all'} workers: {given.count / took:.2f} candidates/s, {first / took:.2f} times"
