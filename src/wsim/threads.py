@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
+import functools
 import os
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from threadpoolctl import ThreadpoolController
 
 # The judge's matrices have tens to hundreds of rows. OpenBLAS shares them out to all cores, whose threads wait for each
 # other by turning round and round: a heap's verdict took 4 to 7 times as much processor time, on two cores.
@@ -16,3 +23,22 @@ def one_thread() -> None:
     """
     for name, count in _ONE.items():
         os.environ.setdefault(name, count)
+
+
+@contextlib.contextmanager
+def in_one_thread() -> Iterator[None]:
+    """Let it take one meanwhile, in a process that is not ours alone, if nobody has said otherwise."""
+    if _ONE.keys() <= os.environ.keys():
+        yield
+    else:
+        with _libraries().limit(limits=1, user_api="blas"):
+            yield
+
+
+@functools.cache
+def _libraries() -> ThreadpoolController:
+    """Those that are loaded: to look for them takes 5 ms."""
+    import scipy.linalg  # noqa: F401 - has one of its own
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()

@@ -18,6 +18,7 @@ from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.objective import ObjectiveCheck
 from wsim.judge.repair.aim import aim
 from wsim.judge.verdict import Crash, Finding, RepairTarget, Verdict, status_of, unjudged
+from wsim.threads import in_one_thread
 
 if TYPE_CHECKING:
     from wsim.judge.checks.check import Check
@@ -56,6 +57,7 @@ def judge(recording: Recording, plan: Plan | None = None) -> Verdict:
     return judge_copies([Evidence(recording, plan)])[0]
 
 
+@in_one_thread()
 def judge_copies(copies: Sequence[Evidence]) -> list[Verdict]:
     """Judge several copies of one world, over the same times and by the same plan, each as by itself.
 
