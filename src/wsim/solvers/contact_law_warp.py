@@ -19,7 +19,8 @@ from wsim.solvers.groups import mechanisms, tied_groups
 from wsim.solvers.kept_memory import KeptMemory
 from wsim.solvers.ropes import RopesWarp
 from wsim.solvers.single_precision import last_tolerance
-from wsim.solvers.smooth_steps import Owners, SmoothStepsWarp
+from wsim.solvers.smooth_steps import Owners
+from wsim.solvers.smooth_steps_warp import SmoothStepsWarp
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
 

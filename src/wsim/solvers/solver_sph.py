@@ -19,6 +19,7 @@ from wsim.solvers.shapes import OpenBox, sample_boundary
 from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.sph_domain import domain_of
 from wsim.solvers.sph_faces import FixedFaces
+from wsim.solvers.sph_faults import in_words
 from wsim.solvers.sph_particles import SortedParticles
 from wsim.solvers.sph_search import ParticleSearch
 
@@ -218,27 +219,8 @@ class SolverSPH(SolverBase):
         return broken.numpy(), np.sqrt(fastest2.numpy()), outside.numpy()
 
     def _faults(self, broken: np.ndarray, speeds: np.ndarray) -> list[str]:
-        sound, room, found = self.config.speed_of_sound, self.search.fluid.species.capacity, []
-        for world, (particle, speed, most) in enumerate(zip(broken, speeds, self.search.crowd(), strict=True)):
-            told = ""
-            if particle < self.fluid_count:
-                told = (
-                    f"SolverSPH: fluid particle {particle} of world {world} is not finite; "
-                    "use a smaller time step or a higher speed of sound"
-                )
-            elif speed > sound:
-                told = (
-                    f"SolverSPH: a fluid particle moves at {speed:.4g} m/s, faster than sound at speed_of_sound = "
-                    f"{sound:.4g} m/s: the fluid is not nearly incompressible; use a speed of sound ten times the "
-                    "largest expected speed"
-                )
-            elif most:
-                told = (
-                    f"SolverSPH: {most} neighbours where {room} fit: the fluid has collapsed; "
-                    "use a smaller time step or a higher speed of sound"
-                )
-            found.append(told)
-        return found
+        found = zip(broken.tolist(), speeds.tolist(), self.search.crowd(), strict=True)
+        return in_words(found, self.fluid_count, self.config.speed_of_sound, self.search.fluid.species.capacity)
 
     def bodies_outside(self, state: newton.State) -> list[int]:
         """Bodies whose origin is beside or below the domain, which spans the fluid's start and its tanks."""

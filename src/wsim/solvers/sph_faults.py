@@ -1,0 +1,38 @@
+"""What makes a world's fluid worthless, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+
+def in_words(found: Iterable[tuple[int, float, int]], count: int, sound: float, room: int) -> list[str]:
+    """Of each world a text that says what to change, empty where its fluid is sound.
+
+    Args:
+        found: Of each world its first particle that is not finite, `count` if there is none; the largest speed [m/s];
+            and the most neighbours of a particle, where there are more than fit, else 0.
+        count: Fluid particles of a world.
+        sound: The speed of sound [m/s].
+        room: Neighbours that fit.
+    """
+    return [_fault(world, *each, count, sound, room) for world, each in enumerate(found)]
+
+
+def _fault(world: int, particle: int, speed: float, most: int, count: int, sound: float, room: int) -> str:
+    if particle < count:
+        return (
+            f"SolverSPH: fluid particle {particle} of world {world} is not finite; "
+            "use a smaller time step or a higher speed of sound"
+        )
+    if speed > sound:
+        return (
+            f"SolverSPH: a fluid particle moves at {speed:.4g} m/s, faster than sound at speed_of_sound = "
+            f"{sound:.4g} m/s: the fluid is not nearly incompressible; use a speed of sound ten times the "
+            "largest expected speed"
+        )
+    if most:
+        return (
+            f"SolverSPH: {most} neighbours where {room} fit: the fluid has collapsed; "
+            "use a smaller time step or a higher speed of sound"
+        )
+    return ""
