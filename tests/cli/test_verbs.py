@@ -40,9 +40,20 @@ def test_unknown_words_are_named_in_one_line(wsim, tmp_path: Path, verb: tuple[s
     assert ended.code == 2
     assert ended.err.startswith("wsim: ")
     assert ended.err.count("\n") == 1
+    assert len(ended.err) <= 3 * 80  # lines of a terminal
     assert "'giraffe', 'sings'" in ended.err
+    assert "wsim plan --words" in ended.err
     assert ended.out == ""
     assert list(tmp_path.iterdir()) == []
+
+
+def test_the_builtin_planners_words_are_listed(wsim) -> None:
+    ended = wsim("plan", "--words")
+    assert ended.code == 0
+    said = " ".join(ended.out.split())
+    for word in ("things: ", "seesaw", "materials: ", "oak", "what they do: ", "float,"):
+        assert word in said
+    assert max(map(len, ended.out.splitlines())) <= 80
 
 
 @pytest.mark.parametrize(

@@ -139,7 +139,8 @@ def test_what_is_not_understood_is_named(prompt, words):
     with pytest.raises(NotUnderstood) as caught:
         plan(prompt)
     assert caught.value.words == words
-    assert "--plan plan.json" in str(caught.value) and "\n" not in str(caught.value)
+    assert "wsim plan --words" in str(caught.value) and "--planner-model" in str(caught.value)
+    assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize(

@@ -19,6 +19,7 @@ from wsim.loop.options import Options
 from wsim.plan.schema import Plan
 from wsim.plan.store import load
 from wsim.program.drafted import refuse_unbuildable
+from wsim.rules.grammar import known_words
 from wsim.rules.planner import plan as make_plan
 from wsim.rules.questions import questions
 from wsim.runs.folder import write_whole
@@ -35,6 +36,7 @@ def plan(
     json: Annotated[bool, typer.Option("--json", help="Print the plan as JSON.")] = False,
     file: Annotated[Path | None, typer.Option("--plan", help="Check and show this plan.json.")] = None,
     schema: Annotated[bool, typer.Option("--schema", help="Print the JSON Schema of a plan, and stop.")] = False,
+    words: Annotated[bool, typer.Option("--words", help="Print what the builtin planner knows, and stop.")] = False,
     answers: Answers = None,
     image: Image = None,
     model: Model = None,
@@ -44,6 +46,9 @@ def plan(
     """Show the plan of a sentence: objects, places, what must happen, what was assumed, what it takes, two drawings."""
     if schema:
         print(_schema())
+        return
+    if words:
+        print(known_words())
         return
     models = choose(model, planner=planner_model)
     if models.planner == BUILTIN or file is not None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import difflib
 import re
+import textwrap
 from collections.abc import Iterator
 from functools import cache
 from typing import Any
@@ -32,10 +33,8 @@ class NotUnderstood(UserError):  # noqa: N818 - it reads as the sentence it carr
         self.words = words
         quoted = ", ".join(f"{word!r}{_suggestion(word) if reason == _UNKNOWN else ''}" for word in words)
         super().__init__(
-            f"the builtin planner {reason.rstrip(':')}: {quoted}. It plans things in a tank of water, on the ground, "
-            f"on tables and ramps, pendulums, and vehicles that drive, and knows only these words — {known_words()}. "
-            "Reword the prompt, or write the plan yourself and pass it: wsim generate --plan plan.json, or let a "
-            "language model plan: wsim generate --planner-model MODEL"
+            f"the builtin planner {reason.rstrip(':')}: {quoted}. `wsim plan --words` lists what it knows; "
+            "--planner-model MODEL lets a language model plan any sentence"
         )
 
 
@@ -49,16 +48,25 @@ def _suggestion(word: str) -> str:
 
 
 def known_words() -> str:
-    """What the planner knows, for people."""
+    """What the planner knows, for people: a paragraph for each kind of words."""
     known = lexicon()
-    things = sorted({*known.nouns, *known.words_of("GROUP"), *known.words_of("FLUID"), *known.words_of("GROUND")})
-    return (
-        f"things: {', '.join(things)}; "
-        f"materials: {', '.join(known.words_of('MATERIAL'))}; colours: {', '.join(known.words_of('COLOR'))}; "
-        f"sizes: {', '.join(known.words_of('SCALE'))} or a measure such as 20 cm or 2 kg; "
-        f"what they do: {', '.join(sorted(known.particles))}; "
-        f"where: {', '.join(known.words_of('SIDE'))}, on, in, between"
+    things = sorted(
+        {
+            *(key.replace("_", " ") for key in known.nouns),
+            *known.words_of("GROUP"),
+            *known.words_of("FLUID"),
+            *known.words_of("GROUND"),
+        }
     )
+    kinds = {
+        "things": things,
+        "materials": known.words_of("MATERIAL"),
+        "colours": known.words_of("COLOR"),
+        "sizes": [*known.words_of("SCALE"), "a measure such as 20 cm or 2 kg"],
+        "what they do": sorted(known.particles),
+        "where": [*known.words_of("SIDE"), "on", "in", "between"],
+    }
+    return "\n".join(textwrap.fill(f"{kind}: {', '.join(words)}", 80) for kind, words in kinds.items())
 
 
 def parse(prompt: str) -> list[Clause]:
