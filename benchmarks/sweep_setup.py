@@ -34,7 +34,7 @@ from wsim.judge.checks.registry import physics_checks, run_checks
 from wsim.judge.decide import work_out
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.language.objective import ObjectiveCheck
-from wsim.judge.worlds import CHUNK, verdicts_of
+from wsim.judge.worlds import CHUNK, take_verdicts, verdicts_of
 from wsim.plan.schema import Plan
 from wsim.plan.store import load
 from wsim.recording.trajectories import Trajectories
@@ -46,7 +46,7 @@ from wsim.sweep.batch import batches
 from wsim.sweep.candidate import Candidate
 from wsim.sweep.sampling import sample
 from wsim.sweep.screen import rejected
-from wsim.sweep.work import Shard, as_varied, build
+from wsim.sweep.work import Shard, build, outcome
 
 PROGRAM = """
 def build(scene):
@@ -141,10 +141,14 @@ def measured(args: argparse.Namespace, folder: Path) -> dict[str, Any]:
             kept.append(sum(int(array.nbytes) for array in arrays))
             for array in arrays:
                 moved.update(array.tobytes())
-            verdicts = timed("judged", verdicts_of, found, plan, args.cores) if left else []
-            for verdict in [*early.values(), *verdicts]:
+            own = [batch[w].candidate for w in left]
+            outcomes = timed("judged", take_verdicts, found, plan, outcome, own, args.cores) if left else []
+            verdicts = verdicts_of(found, plan, args.cores) if left else []
+            if [outcome(*each) for each in zip(verdicts, own, strict=True)] != outcomes:
+                raise SystemExit("the outcomes are not those of the verdicts")
+            for w, verdict in [*early.items(), *zip(left, verdicts, strict=True)]:
                 said.update(verdict.model_dump_json().encode())
-                counts[as_varied(verdict).status] += 1
+                counts[outcome(verdict, batch[w].candidate).status] += 1
             if args.checks and left and len(some) > WARM:
                 for name, busy in checks_of(found, plan).items():
                     by_check[name] += busy

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from wsim import helpers
+from wsim.plan.schema import Plan
 from wsim.scene import Scene
 from wsim.sweep import Axis, Spec, SweepFolder, sweep
 from wsim.sweep import batch as batched
@@ -220,3 +224,44 @@ def test_a_stage_that_cannot_be_described_goes_alone(folder: Path) -> None:
     made = [SimpleNamespace(stage=stage, program=folder / "program.py") for stage in (stages[0], folder, stages[1])]
     built: Any = [(Candidate(number=k), iteration, b"") for k, iteration in enumerate(made)]
     assert [[member.candidate.number for member in batch] for batch in batched.batches(built, 8)] == [[0, 2]]
+
+
+def test_helpers_have_what_judges_contacts_before_they_are_forked() -> None:
+    """Else each of them loads it anew: 0.2 s of CPU, in the first batch."""
+    asked = "import sys, wsim.sweep.work; print('mujoco' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True).stdout == "True\n"
+
+
+FARTHER = {
+    "title": "slides", "prompt": "A box slides.",
+    "objects": [
+        {"name": "ground", "role": "terrain", "state": "static",
+         "construction": {"kind": "proxy", "primitive": "ground"}},
+        {"name": "box", "role": "rigid_body", "state": "dynamic", "material": {"name": "wood", "density": 500.0},
+         "construction": {"kind": "proxy", "primitive": "box", "size": [0.2, 0.2, 0.2]}},
+    ],
+    "objectives": [{"kind": "formula", "object": "box", "formula": {
+        "op": "reaches", "object": "box", "target": [0.3, 0.0, 0.1], "within": 0.06,
+    }}],
+    "simulation": {"duration": 0.5, "frame_rate": 60.0},
+}  # fmt: skip
+
+
+def test_outcomes_that_helpers_take_are_those_of_one_process(folder: Path) -> None:
+    """The slippery one goes 0.38 m in its half second, the others v^2 / 2 g mu = 0.17 m."""
+    points = [{"edge": 0.18}, {"friction": 0.1}, {"edge": 0.22}, {"edge": 0.21}]
+    candidates = tuple(Candidate(number=k + 1, params=point) for k, point in enumerate(points))
+    (folder / "plan.json").write_text(Plan.model_validate(FARTHER).model_dump_json())
+    here = work(Shard(candidates, folder, Spec(worlds=4)))
+    helpers.start(2)
+    try:
+        there = work(Shard(candidates, folder, Spec(worlds=4), cores=2))
+    finally:
+        helpers.end()
+    assert [replaced(outcome, seconds=0.0) for outcome in there] == [replaced(outcome, seconds=0.0) for outcome in here]
+    assert [outcome.status for outcome in here] == ["rejected", "accepted", "rejected", "rejected"]
+    assert all(outcome.margins and outcome.together == 4 for outcome in here)
+
+
+def replaced(outcome: Outcome, **fields: object) -> Outcome:
+    return outcome.model_copy(update=fields)

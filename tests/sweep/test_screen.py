@@ -199,7 +199,8 @@ def test_statuses_are_the_full_judges(tmp_path):
     # v^2 / 2 g mu, or what is gone of it in half a second: 0.109, 0.232, 0.432 m
     plan = plan_of(say.gone_between("box", "x", 0.15, 0.3), say.settles("ball"), seconds=0.5, rate=40.0)
     early, full = screen.rejected(tracks, plan), [as_varied(each) for each in verdicts_of(tracks.read(), plan)]
-    assert [as_varied(each).status for each in judged(tracks, plan)] == [each.status for each in full]
+    statuses = judged(tracks, plan, lambda verdict, number: (number, as_varied(verdict).status), range(len(stages)))
+    assert statuses == list(enumerate(each.status for each in full))
     assert [finding.message for finding in full[5].failures] == []
     assert {each.status for each in full} == {"accepted", "rejected"}
     assert {0, 10} < set(early)  # too slow, too fast

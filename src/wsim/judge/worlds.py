@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 
     # A world's status, its findings by key, and what crashed.
     Row = tuple[Status, dict[str, tuple[bool, float]], list[Crash]]
+
+Value = TypeVar("Value")
+Take = Callable[["Verdict", Any], Value]  # what is made of a world's verdict, and of what is given with it
 
 CHUNK = 64  # worlds judged at once, between two reports of progress
 
@@ -72,8 +75,8 @@ def judge_worlds(
     """
     count = worlds.world_count
     rows: list[Row] = []
-    for part in _judged(worlds, plan, processes or len(os.sched_getaffinity(0))):
-        rows += map(_row, part)
+    for part in _judged(worlds, plan, _row, [None] * count, processes or len(os.sched_getaffinity(0))):
+        rows += part
         progress("judging", len(rows), count)
     keys = list(dict.fromkeys(key for _, found, _ in rows for key in found))
     none = (True, np.nan)
@@ -101,26 +104,50 @@ def verdicts_of(worlds: Trajectories, plan: Plan | None = None, processes: int =
         plan: What they are held against.
         processes: To which they are shared out.
     """
-    return [verdict for part in _judged(worlds, plan, processes) for verdict in part]
+    return take_verdicts(worlds, plan, _all, [None] * worlds.world_count, processes)
 
 
-def _judged(worlds: Trajectories, plan: Plan | None, processes: int) -> Iterator[list[Verdict]]:
-    """The verdicts on all worlds in order, some at a time, by helpers if they wait (`wsim.helpers`).
+@uncollected()
+def take_verdicts(
+    worlds: Trajectories, plan: Plan | None, take: Take[Value], given: Sequence[Any], processes: int = 1
+) -> list[Value]:
+    """What is made of each world's verdict by the process that judges it: all of a verdict takes long to be sent.
+
+    Args:
+        worlds: The copies.
+        plan: What they are held against.
+        take: Called with a verdict and what is given of its world; a function of a module.
+        given: (W,).
+        processes: To which worlds are shared out.
+    """
+    return [taken for part in _judged(worlds, plan, take, given, processes) for taken in part]
+
+
+def _judged(
+    worlds: Trajectories, plan: Plan | None, take: Take[Value], given: Sequence[Any], processes: int
+) -> Iterator[list[Value]]:
+    """What is taken of the verdicts on all worlds in order, some at a time, by helpers if they wait (`wsim.helpers`).
 
     Particles are too many to be sent: forks, which have them already, judge those worlds. Neither needs a device.
     """
     count = worlds.world_count
     size = CHUNK if not worlds.worlds else max(1, min(CHUNK, -(-count // processes)))
-    parts = [worlds.part(k, k + size) for k in range(0, count, size)]
-    judged = partial(_verdicts, plan)
+    parts = [(worlds.part(k, k + size), given[k : k + size]) for k in range(0, count, size)]
+    judged: Callable[[tuple[Trajectories, Sequence[Any]]], list[Value]] = partial(_taken, plan, take)
     yield from shared_out((lambda part: judged(part)) if worlds.fluids else judged, parts, processes)
 
 
-def _verdicts(plan: Plan | None, worlds: Trajectories) -> list[Verdict]:
-    return judge_copies([Evidence(worlds.recording(k), plan) for k in range(worlds.world_count)])
+def _taken(plan: Plan | None, take: Take[Value], part: tuple[Trajectories, Sequence[Any]]) -> list[Value]:
+    worlds, given = part
+    verdicts = judge_copies([Evidence(worlds.recording(k), plan) for k in range(worlds.world_count)])
+    return list(map(take, verdicts, given))
 
 
-def _row(verdict: Verdict) -> Row:
+def _all(verdict: Verdict, _: None) -> Verdict:
+    return verdict
+
+
+def _row(verdict: Verdict, _: None) -> Row:
     seen: Counter[str] = Counter()
     found: dict[str, tuple[bool, float]] = {}
     for finding in verdict.findings:

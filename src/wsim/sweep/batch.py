@@ -6,12 +6,12 @@ import contextlib
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from pydantic import ValidationError
 
 from wsim.forks import shared_out, uncollected
-from wsim.judge.worlds import verdicts_of
+from wsim.judge.worlds import Take, take_verdicts
 from wsim.memory import free_memory
 from wsim.runs.simulation import is_controlled, open_controller
 from wsim.scene.reading import Reading, read
@@ -25,12 +25,13 @@ from wsim.sweep.turns import turn
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from wsim.judge.verdict import Verdict
     from wsim.plan.schema import Plan
     from wsim.runs.iteration import Iteration
     from wsim.scene.world import World
     from wsim.sim.tracks import Tracks
     from wsim.sweep.candidate import Candidate
+
+Value = TypeVar("Value")
 
 BYTES_OF_A_PARTICLE = 28  # seven numbers in single precision
 A_CALL = 32  # stages that a helper is asked about at once: sending one and its answer takes longer than reading it
@@ -112,12 +113,15 @@ def bytes_of_particles(world: World) -> float:
     return count * (world.duration * world.frame_rate + 1.0) * BYTES_OF_A_PARTICLE
 
 
-def verdicts(batch: Sequence[Member], plan: Plan | None, processes: int = 1) -> list[tuple[Verdict, str]]:
-    """Each member's verdict, and what is to be said of how it was set up. What does not fit into memory goes in halves.
+def run(batch: Sequence[Member], plan: Plan | None, take: Take[Value], processes: int = 1) -> list[tuple[Value, str]]:
+    """What is made of each member's verdict, and what is to be said of how it was set up.
+
+    What does not fit into memory goes in halves.
 
     Args:
         batch: One of `batches`.
         plan: What its worlds are held against.
+        take: Called with a verdict and its candidate, by the process that judges; a function of a module.
         processes: That it is set up and judged in; it is simulated in this one.
 
     Raises:
@@ -142,18 +146,22 @@ def verdicts(batch: Sequence[Member], plan: Plan | None, processes: int = 1) -> 
         if len(batch) < 2 or not _is_no_room(error):
             raise
         half = len(batch) // 2
-        return verdicts(batch[:half], plan, processes) + verdicts(batch[half:], plan, processes)
+        return run(batch[:half], plan, take, processes) + run(batch[half:], plan, take, processes)
     singly = simulation.built.singly
     note = f"stages were read one by one, which takes longer, as {singly}" if singly else ""
-    return [(verdict, note) for verdict in judged(tracks, plan, processes)]
+    candidates = [member.candidate for member in batch]
+    return [(taken, note) for taken in judged(tracks, plan, take, candidates, processes)]
 
 
-def judged(tracks: Tracks, plan: Plan | None, processes: int = 1) -> list[Verdict]:
-    """The verdict on each world: where an objective is known to fail that alone, else of all that is asked."""
-    found = rejected(tracks, plan)
+def judged(
+    tracks: Tracks, plan: Plan | None, take: Take[Value], given: Sequence[object], processes: int = 1
+) -> list[Value]:
+    """What is made of the verdict on each world: where an objective is known to fail on that alone, else on all."""
+    found = {w: take(verdict, given[w]) for w, verdict in rejected(tracks, plan).items()}
     left = [w for w in range(tracks.count) if w not in found]
     if left:
-        found |= dict(zip(left, verdicts_of(tracks.read(left), plan, processes), strict=True))
+        full = take_verdicts(tracks.read(left), plan, take, [given[w] for w in left], processes)
+        found |= dict(zip(left, full, strict=True))
     return [found[w] for w in range(tracks.count)]
 
 

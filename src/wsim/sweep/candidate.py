@@ -80,7 +80,7 @@ class Outcome(BaseModel):
         return (ORDER.index(self.status), -(0.0 if self.slack is None else self.slack), self.candidate.number)
 
     @classmethod
-    def of(cls, candidate: Candidate, verdict: Verdict, seconds: float) -> Outcome:
+    def of(cls, candidate: Candidate, verdict: Verdict, seconds: float = 0.0) -> Outcome:
         """What a verdict says of a candidate.
 
         What was asked decides how near it came; where something else failed, that does too. The room that other

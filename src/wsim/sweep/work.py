@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+import mujoco  # noqa: F401 - the judge searches for contacts with it: helpers have it if it is here before them
 
 from wsim.assets import asset_folders
 from wsim.errors import UserError
@@ -20,7 +22,7 @@ from wsim.runs import draws
 from wsim.runs.iteration import Iteration, no_world
 from wsim.runs.settings import Settings
 from wsim.scene.usd_threads import forks
-from wsim.sweep.batch import Member, batches, verdicts
+from wsim.sweep.batch import Member, batches, run
 from wsim.sweep.candidate import Candidate, Outcome
 from wsim.sweep.pool import told
 from wsim.sweep.spec import Spec
@@ -170,30 +172,36 @@ def _set_draws(
 
 
 def _alone(candidate: Candidate, iteration: Iteration, built: BuildResult) -> Outcome:
-    def run() -> Verdict:
-        return iteration.happen() if built.ok else no_world(built)
-
     started = time.perf_counter()
-    return _outcome(candidate, run, lambda: built.seconds + time.perf_counter() - started)
+    try:
+        found = outcome(iteration.happen() if built.ok else no_world(built), candidate)
+    except Exception as error:  # noqa: BLE001 - one candidate's, and the others go on
+        found = _failed(candidate, error)
+    return _taking(found, built.seconds + time.perf_counter() - started)
 
 
 def _together(batch: Sequence[Member], plan: Plan | None, cores: int) -> dict[int, Outcome]:
-    """The outcomes of a batch, by candidate. Raises what `verdicts` does where it cannot be simulated as one."""
+    """The outcomes of a batch, by candidate. Raises what `run` does where it cannot be simulated as one."""
     started = time.perf_counter()
-    found = verdicts(batch, plan, cores)
+    found = run(batch, plan, outcome, cores)
     seconds = (time.perf_counter() - started) / len(batch)
-    outcomes = {}
-    for member, (verdict, note) in zip(batch, found, strict=True):
-        own = _outcome(member.candidate, lambda verdict=verdict: verdict, lambda: seconds)  # type: ignore[misc]
-        outcomes[member.candidate.number] = own.model_copy(update={"together": len(batch), "note": note})
-    return outcomes
+    return {
+        own.candidate.number: _taking(own, seconds).model_copy(update={"together": len(batch), "note": note})
+        for own, note in found
+    }
 
 
-def _outcome(candidate: Candidate, run: Callable[[], Verdict], seconds: Callable[[], float]) -> Outcome:
+def outcome(verdict: Verdict, candidate: Candidate) -> Outcome:
+    """What a verdict says of a candidate, held to what it was drawn for; what it took is not known yet."""
     try:
-        verdict = run()
-        if candidate.values:
-            verdict = as_varied(verdict)
-        return Outcome.of(candidate, verdict, seconds())
+        return Outcome.of(candidate, as_varied(verdict) if candidate.values else verdict)
     except Exception as error:  # noqa: BLE001 - one candidate's, and the others go on
-        return Outcome(candidate=candidate, status="failed", reason=told(error), seconds=round(seconds(), 3))
+        return _failed(candidate, error)
+
+
+def _failed(candidate: Candidate, error: Exception) -> Outcome:
+    return Outcome(candidate=candidate, status="failed", reason=told(error))
+
+
+def _taking(found: Outcome, seconds: float) -> Outcome:
+    return found.model_copy(update={"seconds": round(seconds, 3)})

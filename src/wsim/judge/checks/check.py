@@ -135,7 +135,8 @@ class Check:
             details: Other fields of the finding.
         """
         above = value > expected
-        if target is not None and not target.direction:
+        room = bounds[1] - value if above else value - bounds[0]
+        if target is not None and not target.direction and not room >= 0.0:
             target = target.model_copy(update={"direction": "lower" if above else "raise"})
         fields: dict[str, Any] = {"expected": expected, "target": target, **details}
         return self.measured(message, value, bounds[above], unit, at_most=above, **fields)
