@@ -36,7 +36,9 @@ STEEPEST = 0.2  # cosine between a triangle's normal and one at its corners, at 
 FLAT = 1e-3  # sine between two faces whose edge does not stick out
 DEEPEST = 0.5  # of a shape's radius: what is deeper under a face is not pushed out by it
 MOST = 256  # corners of a mesh that are asked for over another's faces
+NEAR = 2e-3  # [m]: what is nearer than this touches
 MANY = 32  # contacts of one pair: more are thinned to the deepest and the outermost in each of
+SOME = 16  # of these, that touch, and are kept besides
 WAYS = np.array([way for way in np.ndindex(3, 3, 3) if way != (1, 1, 1)]) - 1.0
 
 
@@ -364,11 +366,15 @@ def _pressed(points: Floats, depth: Depth, pose: Floats, reach: float, deepest: 
 
 
 def _thinned(near: Near) -> Near:
-    """Contacts with about one normal, of which the outermost carry whatever all of them do."""
+    """Contacts with about one normal, of which the outermost carry whatever all of them do.
+
+    Of those that touch, and of those that are apart: a body that leans on an edge has the corners of its side apart.
+    Where it turns on it, what touches slips each its own way, and rubs otherwise than the outermost: some of it stays.
+    """
     if len(near.gap) <= MANY:
         return near
     tenths = np.rint(10.0 * near.normal).astype(np.intp) + 10  # 0 to 20
-    group = np.unique(tenths @ [441, 21, 1], return_inverse=True)[1]
+    group = np.unique(tenths @ [441, 21, 1] + 9261 * (near.gap <= NEAR), return_inverse=True)[1]
     order = np.argsort(group, kind="stable")
     group, point = group[order], near.point[order]
     first = np.flatnonzero(np.diff(group, prepend=-1))
@@ -377,6 +383,7 @@ def _thinned(near: Near) -> Near:
     along = point @ WAYS.T - np.einsum("ni,ni->n", point, normal)[:, None] * (normal @ WAYS.T)
     row, way = np.nonzero(along == np.maximum.reduceat(along, first)[group])
     outermost = np.unique(group[row] * len(WAYS) + way, return_index=True)[1]
-    kept = [int(np.argmin(near.gap)), *order[row[outermost]]]
+    touch = np.flatnonzero(near.gap <= NEAR)
+    kept = [int(np.argmin(near.gap)), *order[row[outermost]], *touch[:: -(-len(touch) // SOME) or 1]]
     chosen = np.unique(kept)
     return Near(near.point[chosen], near.normal[chosen], near.gap[chosen])

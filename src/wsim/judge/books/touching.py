@@ -15,7 +15,7 @@ import numpy as np
 
 from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.judge.books.flats import flats
-from wsim.judge.books.meshes import Triangles, colliding, radius_about, touching
+from wsim.judge.books.meshes import NEAR, Triangles, colliding, radius_about, touching
 from wsim.judge.books.searching import Search
 from wsim.scene.contact import Pair, pair_law, passing
 
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     Rows = NDArray[np.intp]
 
 WORLD = -1  # row of what never moves
-NEAR = 2e-3  # [m]: what is nearer than this touches
 
 
 @dataclass(frozen=True)

@@ -51,7 +51,10 @@ class CheckContinuity(Check):
             evidence.kept[CheckContinuity] = self._asked(evidence)
         (far, most), (turned, angle), drift = cast("tuple[Pair, Pair, Pair]", evidence.kept[CheckContinuity])
         change = "half the velocity's change about then, g h, and the speed of what may hit or drive it, over h"
-        rate = "its fastest rate then, half the rate's change, and g h / r or a hit's v / r, over the frame's h"
+        rate = (
+            "its fastest rate then, half the rate's change, g h / r or a hit's v / r, and what it was caught with "
+            "over its least radius of gyration, over the frame's h"
+        )
         ends = (
             "what its ends and its blows leave of the trapezoidal rule, a time step of its change of velocity, and "
             "speeds that blows may have given and taken between two frames"
@@ -110,7 +113,7 @@ class CheckContinuity(Check):
         turned = 2.0 * np.arccos(np.clip(cosine, 0.0, 1.0))
         fastest = np.maximum(motion.rate[..., 1:, :], motion.rate[..., :-1, :])
         # A body that tips over an edge turns at most as g pulls its centre about it.
-        pushed = (evidence.gravity * h + handed) / (motion.smallest / 2) + driven
+        pushed = (evidence.gravity * h + handed) / (motion.smallest / 2) + driven + _tipped(evidence)
         limit = h * (fastest + 0.5 * _around(motion.w) + np.where(motion.kinematic, 0.0, pushed)) + 1e-3
         return np.where(fastest * h > self.alias, 0.0, turned), limit
 
@@ -208,6 +211,19 @@ def _pulled(evidence: Evidence) -> Floats:
         for row in {evidence.index(guide.body) for guide in spring.path if guide.body is not None}:
             found[:, row] += motion.h * np.maximum(pull[1:], pull[:-1]) / motion.mass[row]
     return found
+
+
+def _tipped(evidence: Evidence) -> Floats:
+    """How fast bodies may have turned between two frames as something caught them, (..., T - 1, B) [rad/s].
+
+    A box that lands on a corner turns till it lies, and may show a turning at neither frame. It came with m u^2 / 2 to
+    what caught it, u what beside gravity changed its velocity, and no blow makes more of that: k w <= u, k its least
+    radius of gyration.
+    """
+    motion = evidence.motion
+    least = np.maximum(np.linalg.eigvalsh(motion.inertia)[..., 0], 1e-300)
+    caught = lengths(motion.acceleration - motion.gravity) * motion.h[:, None]
+    return np.asarray(caught * np.sqrt(motion.mass / least))
 
 
 def _added(rate: Floats) -> Floats:

@@ -9,6 +9,7 @@ import numpy as np
 
 from wsim.judge.books.balance import Books
 from wsim.judge.books.forces import ONE_WAY, STILL
+from wsim.judge.books.leaning import leaning
 from wsim.judge.books.recorded import SOLVED, RecordedContacts
 from wsim.judge.checks.check import Check, Checks, listed
 from wsim.judge.verdict import RepairTarget
@@ -132,8 +133,10 @@ class CheckRecordedForces(Check):
         friction, (least, most) = contacts.friction[rows], contacts.rubs(normal, speed)[:, rows]
         resists = least < friction
         # Of points whose normals lean apart along the slip, as a box's on a hill, friction leans as they do. Across it,
-        # as in a trough, they may lean by more and take nothing, and a mean does not tell which.
-        least = least * np.clip(np.linalg.norm(normal[rows], axis=1), LEANS, 1.0)
+        # as in a trough, they may lean by more and take nothing, and a mean does not tell which: places do.
+        least = least * np.clip(
+            np.linalg.norm(normal[rows], axis=1), leaning(evidence, contacts, rows, way, LEANS), 1.0
+        )
         turned = contacts.swing(normal, speed.min(axis=1))[rows]
         round_ = 1.0 - np.sqrt(1.0 - aside[rows] ** 2)
         slack = (self.edge + 1.0 - cosine[rows] + 0.5 * turned**2 + round_) * friction + self.cone
