@@ -21,11 +21,10 @@ TOP = WALL + BASIN[2] + APRON  # of the docks: 0.1 m below that of the empty blo
 EDGE = BLOCK[0] / 2 + 0.1  # where the docks end [m]
 START, GOAL = -5.0, 5.0  # x of the middle between the axles [m]
 MIDDLE = 0.19  # with the weight over the block's middle: 43 % are on the front axle
-AXLE = 2.715 / 2  # from there to the rear axle, which is what is led [m]
 WAITS_UNTIL = 9.0  # [s]
 PACE = {"speed": 1.5, "acceleration": 1.0, "braking": 1.0}
-ONTO = Driver("buggy", "polaris", path=[(START - AXLE, 0.0), (MIDDLE - AXLE, 0.0)], **PACE)
-OFF = Driver("buggy", "polaris", path=[(MIDDLE - AXLE, 0.0), (GOAL - AXLE, 0.0)], **PACE)
+ONTO = Driver("buggy", "polaris", path=[(START, 0.0), (MIDDLE, 0.0)], **PACE)
+OFF = Driver("buggy", "polaris", path=[(MIDDLE, 0.0), (GOAL, 0.0)], **PACE)
 
 
 def build(scene: Scene) -> None:

@@ -4,6 +4,7 @@ from wsim.scene import Area, Driver, Hill, Level, Noise, Road, Scene
 
 TRACK = Road(points=[(-58.0, 0.0), (-35.0, 5.0), (-12.0, -4.0), (10.0, 2.0), (32.0, 0.0), (55.0, -5.0)], width=4.0)
 START, GOAL = TRACK.points[0], TRACK.points[-1]
+SOIL = Road(points=[(-62.6, -1.9), *TRACK.points, (59.9, -6.0)], width=4.0)  # under all of the truck at both ends, too
 DRIVER = Driver("truck", "hmmwv", path=TRACK.line(), speed=8.0, acceleration=2.5, braking=2.5, lateral=2.5)
 
 
@@ -20,12 +21,12 @@ def build(scene: Scene) -> None:
             Level(START, 4.0),
             Level(GOAL, 4.0),
         ],
-        areas=[Area("track", road=TRACK, rolling_friction=0.03, color=(0.27, 0.19, 0.11))],
+        areas=[Area("track", road=SOIL, rolling_friction=0.03, color=(0.27, 0.19, 0.11))],
         friction=0.85,
         color=(0.15, 0.22, 0.08),
     )
-    # Its rear axle stands where the track begins, its nose along it.
-    truck = scene.vehicle("truck", "hmmwv", position=land.place(START[0] + 1.56, START[1] + 0.65), yaw_deg=22.8)
+    # It stands where the track begins, its nose along it.
+    truck = scene.vehicle("truck", "hmmwv", position=land.place(*START), yaw_deg=22.8)
     scene.scatter("rock", on=land, count=70, size=(0.3, 1.6), clear=[(TRACK, 1.0), (START, 6.0), (GOAL, 6.0)], seed=2)
     scene.scatter("tree", ["conifer", "deciduous_tree"], on=land, count=22, clear=[(TRACK, 2.5)], seed=5)
     scene.light("sun", direction=(-0.4, 0.5, -1.0))

@@ -11,7 +11,7 @@ from wsim.scene.describe import describe
 
 
 def test_a_program_lays_the_land_and_drives_over_it() -> None:
-    """Its driver leads the rear axle from where that starts, which is half a wheelbase behind the car's middle."""
+    """Its driver leads the car from where it stands."""
     trees = {**ROCKS, "name": "tree", "construction": {"kind": "scatter", "on": "land", "count": 1, "what": ["conifer"],
              "clear": [{"points": [[0, 0]], "by": 4.0}, {"points": [[0, 0], [9, 0]], "by": 2.0}]}}  # fmt: skip
     made = a_plan(driven(), trees, LAND)
@@ -20,7 +20,7 @@ def test_a_program_lays_the_land_and_drives_over_it() -> None:
         "scene.vehicle("
     )
     assert "from wsim.scene import Driver, Hill, Level, Noise, Road, Scene\n" in text
-    assert "    (-11.3, 0.0),\n    (10.0, 0.0),\n]" in text
+    assert "    (-10.0, 0.0),\n    (10.0, 0.0),\n]" in text
     assert 'Driver("car", "car", path=Road(' in text and "speed=5.0)" in text
     assert 'scene.vehicle("car", "car", position=land.place(-10.0, 0.0, above=' in text
     assert "clear=[((0.0, 0.0), 4.0), (WAY" in text

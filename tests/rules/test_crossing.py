@@ -60,14 +60,13 @@ def test_it_is_the_world_that_the_example_has(made) -> None:
 def test_its_program_is_whole_and_waits(made) -> None:
     program = compose(made)
     assert [each.message for each in validate(program, made)] == []
-    assert "waits=[(-1.167, 0.0, 4.0)]" in program
+    assert "waits=[(0.19, 0.0, 4.0)]" in program
     assert {name for step in made.steps for name in step.objects} == {item.name for item in made.objects}
 
 
 def test_there_is_time_to_come_to_wait_and_to_recover(made) -> None:
     (drive,) = made.object("polaris").registration.actuation
-    x = made.object("polaris").pose.position[0] - preset("polaris").wheelbase / 2
-    way = drive.route[-1][0] - x
+    way = drive.route[-1][0] - made.object("polaris").pose.position[0]
     least = way / drive.speed + drive.waits[0]
     assert least + 3.0 < made.simulation.duration < least + 7.0
 

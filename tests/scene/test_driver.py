@@ -11,6 +11,7 @@ from wsim.scene import Driver, SceneError, VehicleSpec
 from wsim.scene.vehicle_spec import CORNERS, preset
 
 SPEC = preset("hmmwv")
+HALF = 0.5 * SPEC.wheelbase
 G = 9.81
 
 
@@ -22,13 +23,8 @@ class Bicycle:
 
     def __init__(self, speed=0.0, slope=0.0):
         self.world_count = 2
-        self.x, self.y, self.turn, self.speed, self.slope = (
-            np.zeros(2),
-            np.zeros(2),
-            np.zeros(2),
-            np.full(2, speed),
-            slope,
-        )
+        self.x, self.y = np.full(2, -HALF * math.cos(slope)), np.zeros(2)  # of the rear axle: it is at the origin
+        self.turn, self.speed, self.slope = np.zeros(2), np.full(2, speed), slope
         self.steering = {corner: SimpleNamespace(target=np.zeros(2)) for corner in CORNERS[:2]}
         self.axles = {corner: SimpleNamespace(force=np.zeros(2), velocity=np.zeros(2)) for corner in CORNERS}
 
@@ -38,10 +34,15 @@ class Bicycle:
         cy, sy, cp, sp = np.cos(yaw), np.sin(yaw), math.cos(nose), math.sin(nose)
         rotation = np.stack([-sy * sp, cy * sp, sy * cp, cy * cp], axis=1)
         forward = np.stack([np.cos(self.turn), np.sin(self.turn)], axis=1) * math.cos(self.slope)
-        position = np.stack([self.x, self.y, 0.0 * self.x], axis=1)
-        position[:, :2] += 0.5 * SPEC.wheelbase * forward
+        position = np.column_stack([self.place, 0.0 * self.x])
         velocity = np.concatenate([forward, np.full((2, 1), math.sin(self.slope))], axis=1) * self.speed[:, None]
         return SimpleNamespace(position=position, rotation=rotation, velocity=velocity)
+
+    @property
+    def place(self):
+        """Between its axles, (2, 2) [m]."""
+        ahead = np.stack([np.cos(self.turn), np.sin(self.turn)], axis=1)
+        return np.stack([self.x, self.y], axis=1) + HALF * math.cos(self.slope) * ahead
 
     def joint(self, name):
         kind, corner = name.removeprefix("truck_").split("_", 1)
@@ -63,14 +64,14 @@ class Bicycle:
 
 
 def driven(driver, seconds, **start):
-    """(steps, 4): x, y of the rear axle [m], speed [m/s], time [s]; the same in both worlds."""
+    """(steps, 4): x, y between its axles [m], the rear one's speed [m/s], time [s]; the same in both worlds."""
     world, found = Bicycle(**start), []
     for k in range(round(seconds / 0.01)):
         driver.drive(world, 0.01 * k)
         for _ in range(10):
             world.step(0.001)
         assert world.x[0] == world.x[1] and world.speed[0] == world.speed[1]
-        found.append([world.x[0], world.y[0], world.speed[0], 0.01 * (k + 1)])
+        found.append([*world.place[0], world.speed[0], 0.01 * (k + 1)])
     return np.array(found)
 
 
@@ -111,7 +112,22 @@ def test_on_a_circle_it_is_on_the_line():
     off = np.abs(np.hypot(found[:, 0], found[:, 1] - 15.0) - 15.0)
     assert off.max() < 0.06
     assert off[-500:].max() < 0.01
+    lag = math.asin(HALF / 15.0)  # of its heading, as the rear axle goes round inside
     assert found[:, 2] == pytest.approx(5.0 * np.ones(len(found)), rel=0.01)
+    assert found[-500:, 2] == pytest.approx(5.0 * math.cos(lag) * np.ones(500), rel=1e-3)
+
+
+@pytest.mark.parametrize("radius", [7.2, 9.0, 20.0])
+def test_the_point_between_its_axles_is_led_round_any_circle(radius):
+    """Down to hypot(L / tan 26.5 deg, L / 2) = 6.98 m, the smallest: within 1 % of the radius; the axle is inside."""
+    world, driver = Bicycle(speed=2.0), Driver("truck", "hmmwv", path=ring(radius, 0.7, 0.1), speed=2.0, stop=False,
+                                               start_speed=2.0)  # fmt: skip
+    for k in range(round(1.2 * math.pi * radius / 2.0 / 0.01)):
+        driver.drive(world, 0.01 * k)
+        for _ in range(10):
+            world.step(0.001)
+    assert math.dist(world.place[0], (0.0, radius)) == pytest.approx(radius, rel=0.01)
+    assert math.dist((world.x[0], world.y[0]), (0.0, radius)) == pytest.approx(math.sqrt(radius**2 - HALF**2), rel=0.01)
 
 
 def test_it_changes_lanes_and_stops_at_the_end():
@@ -151,7 +167,7 @@ def test_a_lap_begins_at_its_start_and_ends_at_its_end():
     across = 0.0
     for k in range(2000):
         driver.drive(world, 0.01 * k)
-        across = max(across, world.y[0])
+        across = max(across, world.place[0, 1])
         for _ in range(10):
             world.step(0.001)
     assert driver.distance == pytest.approx(2.0 * math.pi * 10.0, abs=0.15)
@@ -214,7 +230,7 @@ def test_it_waits_on_a_slope_whatever_it_carries(lean, more):
         for _ in range(10):
             world.step(0.001)
             world.speed -= 0.001 * (more - 1.0) * SPEC.mass * G * math.sin(slope) / SPEC.effective_mass
-        way.append(world.x[0] / math.cos(slope))
+        way.append(world.place[0, 0] / math.cos(slope))
     way = np.array(way)
     assert way[-1] > 11.0
     stood = np.abs(way * math.cos(slope) - 4.0) < 0.1

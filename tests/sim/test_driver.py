@@ -8,15 +8,12 @@ import pytest
 from tests.ways import lane_change, ring
 from wsim.program.control_world import INPUTS, OUTPUTS, ControlLayout
 from wsim.scene import Driver, Scene
-from wsim.scene.vehicle_spec import preset
 from wsim.sim import Simulation
 from wsim.sim.control import ArrayController, driven_joints
 
-SPEC = preset("hmmwv")
-
 
 def driven(driver, tmp_path, seconds, *, speed=0.0, pitch=0.0, slope=0.0, rate=20.0):
-    """Rear axle (frames, 2) [m], forward speed (frames,) and time, of a truck whose rear axle starts at the origin."""
+    """Its position (frames, 2) [m], forward speed (frames,) and time, of a truck that starts at the origin."""
     scene = Scene()
     scene.simulation(duration=seconds, frame_rate=rate)
     if slope:
@@ -25,9 +22,7 @@ def driven(driver, tmp_path, seconds, *, speed=0.0, pitch=0.0, slope=0.0, rate=2
                   position=(0.5 * math.sin(lean), 0.0, -0.5 * math.cos(lean)))  # fmt: skip
     else:
         scene.ground(friction=0.9)
-    half = 0.5 * SPEC.wheelbase * math.cos(math.radians(slope))
-    place = (half, 0.0, half * math.tan(math.radians(slope)))
-    scene.vehicle("truck", "hmmwv", position=place, pitch_deg=-slope, speed=speed)
+    scene.vehicle("truck", "hmmwv", pitch_deg=-slope, speed=speed)
     stage = scene.save(tmp_path / "v.usda")
     found, arrays = [], {}
 
@@ -51,7 +46,7 @@ def driven(driver, tmp_path, seconds, *, speed=0.0, pitch=0.0, slope=0.0, rate=2
         qd = simulation.state.body_qd.numpy()[truck].astype(float)
         x, y, z, w = q[3:]
         ahead = np.array([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w)])
-        found.append([*(q[:2] - 0.5 * SPEC.wheelbase * ahead[:2]), qd[:3] @ ahead, (k + 1) / rate])
+        found.append([*q[:2], qd[:3] @ ahead, (k + 1) / rate])
     return np.array(found)
 
 

@@ -8,9 +8,12 @@
     def control(world, t):
         DRIVER.drive(world, t)
 
+What follows the line is the vehicle's position, the point between its axles, b = wheelbase / 2 ahead of the rear one.
 The geometry of the steering is that of Coulter (Implementation of the Pure Pursuit Path Tracking Algorithm, CMU 1992),
 seen from the rear axle's middle: a goal at a distance l that lies off the heading by alpha asks for the bicycle's angle
-atan(2 wheelbase sin(alpha) / l), which leads there along a circle. NumPy alone.
+atan(2 wheelbase l sin(alpha) / (l^2 - b^2)). Its circle about the rear axle's turning centre leads the position to the
+goal: with r the rear axle's radius, r^2 + b^2 = |goal - centre|^2 = l^2 - 2 r l sin(alpha) + r^2. (Coulter leads the
+axle, b = 0.) NumPy alone.
 """
 
 from __future__ import annotations
@@ -34,8 +37,8 @@ Floats = NDArray[np.float64]
 
 _PROPORTIONAL = 2.0  # [1/s]: acceleration asked for a lack of speed
 _INTEGRAL = 0.8  # [1/s^2]: damped by 1.1 with the above
-_LEAST_AHEAD = 1.2  # of the wheelbase, that the goal is ahead at least
-_AHEAD = 0.7  # [s] of way that the goal is ahead
+_LEAST_AHEAD = 1.2  # of the wheelbase, that the goal is ahead of the rear axle at least
+_AHEAD = 0.7  # [s] of way that the goal is ahead of it
 _BEFORE, _AFTER = 3.0, 8.0  # [m] of the line that are searched for the nearest place, behind and before the last one
 _AS_CLOSE = 0.5  # [m] more than the nearest place, that a place where it sets out is away at most
 _SLIP = (0.6, 0.12)  # [m/s], of the speed: a wheel that slips by more gets no torque until it grips
@@ -99,8 +102,8 @@ class Driver:
         Args:
             vehicle: The vehicle's name.
             spec: As `scene.vehicle` was given.
-            path: Points (x, y) of the world that the rear axle's middle is to go through in turn [m], close enough to
-                stand for its bends; such as `Road.line()`.
+            path: Points (x, y) of the world that the vehicle's position, the point between its axles, is to go through
+                in turn [m], close enough to stand for its bends; such as `Road.line()`.
             speed: That is held where nothing asks for less [m/s].
             start_speed: As `scene.vehicle` was given [m/s].
             acceleration: At most, speeding up [m/s^2].
@@ -136,9 +139,10 @@ class Driver:
         self._last = t
         body = world.body(self.vehicle)
         forward = _forward(np.asarray(body.rotation, dtype=np.float64))
-        rear = np.asarray(body.position, dtype=np.float64) - 0.5 * self.spec.wheelbase * forward
+        place = np.asarray(body.position, dtype=np.float64)
+        rear = place - 0.5 * self.spec.wheelbase * forward
         speed = np.einsum("wi,wi->w", np.asarray(body.velocity, dtype=np.float64), forward)
-        self._way = self._nearest(rear[:, :2])
+        self._way = self._nearest(place[:, :2])
         self._wait(step)
         self._steer(world, rear[:, :2], forward, speed, step)
         self._push(world, forward, speed, step)
@@ -195,15 +199,15 @@ class Driver:
 
     def _steer(self, world: Any, rear: Floats, forward: Floats, speed: Floats, step: float) -> None:
         """Towards a goal ahead, by Ackermann's geometry for each wheel."""
-        spec, line = self.spec, self._profile
-        ahead = self._way + np.maximum(_LEAST_AHEAD * spec.wheelbase, _AHEAD * np.abs(speed))
+        spec, line, lead = self.spec, self._profile, 0.5 * self.spec.wheelbase
+        ahead = self._way + np.maximum(_LEAST_AHEAD * spec.wheelbase, _AHEAD * np.abs(speed)) - lead
         last = line.points[-1] - line.points[-2]
         over = np.maximum(ahead - line.along[-1], 0.0)[:, None] * last / np.linalg.norm(last)
         goal = np.stack([np.interp(ahead, line.along, line.points[:, k]) for k in (0, 1)], axis=1) + over
         off = goal - rear
         flat = forward[:, :2] / np.linalg.norm(forward[:, :2], axis=1, keepdims=True)
         aside = flat[:, 0] * off[:, 1] - flat[:, 1] * off[:, 0]
-        asked = np.arctan(2.0 * spec.wheelbase * aside / np.maximum((off**2).sum(axis=1), 1e-6))
+        asked = np.arctan(2.0 * spec.wheelbase * aside / np.maximum((off**2).sum(axis=1) - lead**2, 1e-6))
         most, change = math.radians(spec.steer_limit_deg), math.radians(_TURNED) * step
         if step > 0.0:
             asked = np.clip(asked, self._angle - change, self._angle + change)
@@ -217,7 +221,8 @@ class Driver:
     def _push(self, world: Any, forward: Floats, speed: Floats, step: float) -> None:
         """Torques on the axles: what speed, slope and rolling ask for, and what a lack of speed does, bounded."""
         spec, line = self.spec, self._profile
-        wanted = line.speed_at(self._way)
+        # Planned for the position, which in a bend is led round a larger circle than the rear axle is.
+        wanted = line.speed_at(self._way) / np.hypot(1.0, 0.5 * np.tan(self._angle))
         here = np.clip(np.searchsorted(line.along, self._way, side="right") - 1, 0, len(line.gain) - 1)
         gain, stands = line.gain[here], self._stands
         ended = (wanted <= 0.0) & self._stop & ~stands

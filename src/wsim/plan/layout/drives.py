@@ -7,20 +7,17 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from wsim.plan.layout.errors import LayoutError
-from wsim.plan.schema import FromVehicle, Plan, PlanObject
+from wsim.plan.schema import Actuation, FromVehicle, Plan, PlanObject
 
 Spot = tuple[float, float]
 SLOWEST = 0.1  # [m/s]: where it sets off and stops
 
 
-def rear_axle(item: PlanObject) -> Spot:
-    """Where the middle of its rear axle starts, (x, y) [m]: that is what a driver leads along the route."""
-    from wsim.scene.vehicle_spec import preset  # with USD, and few plans have a vehicle
-
-    assert isinstance(item.built, FromVehicle) and item.pose is not None
-    (x, y, _), (ahead, aside, _) = item.pose.position, item.ahead
-    back = 0.5 * preset(item.built.vehicle).wheelbase
-    return round(x - back * ahead, 3), round(y - back * aside, 3)
+def way_of(item: PlanObject, actuation: Actuation) -> list[Spot]:
+    """What a driver leads its vehicle through, (x, y) each [m]: where it starts, and the points of the route."""
+    assert item.pose is not None
+    x, y, _ = item.pose.position
+    return [(x, y), *((point[0], point[1]) for point in actuation.route)]
 
 
 def stops(route: Sequence[Sequence[float]], waits: Sequence[float]) -> list[tuple[float, float, float]]:
@@ -65,7 +62,7 @@ def check_drives(plan: Plan) -> None:
                 continue
             if item.pose is None:
                 continue
-            way = [rear_axle(item), *((x, y) for x, y, *_ in each.route)]
+            way = way_of(item, each)
             takes = drive_time(item.built.vehicle, way, each.speed, item.speed_ahead, each.waits)
             if takes > plan.simulation.duration:
                 raise LayoutError(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from wsim.plan.layout.drives import rear_axle, stops
+from wsim.plan.layout.drives import stops, way_of
 from wsim.plan.layout.land import survey, terrain_of
 from wsim.plan.schema import Actuation, FromVehicle, PlanObject
 from wsim.program.compose.draft import Draft
@@ -62,7 +62,7 @@ def drivers(draft: Draft) -> list[str]:
         draft.imports |= {"Driver", "Road"}
         name = draft.variable(f"{item.name}_driver").upper()
         draft.drivers.append(name)
-        path = f"Road({draft.way((rear_axle(item), *((x, y) for x, y, *_ in each.route)))}).line()"
+        path = f"Road({draft.way(tuple(way_of(item, each)))}).line()"
         given = [f'"{item.name}"', f'"{item.built.vehicle}"', f"path={path}", f"speed={number(each.speed or 0.0)}"]
         given += [f"start_speed={number(item.speed_ahead)}"] if item.speed_ahead > LEVEL else []
         waits = [tuple_of(stop) for stop in stops(each.route, each.waits)]

@@ -57,16 +57,14 @@ def hill_on(way: Way) -> tuple[float, float]:
     return round(ax + HILL_AT * (bx - ax), 3), round(ay + HILL_AT * (by - ay), 3)
 
 
-def land(
-    way: Way, ends: Way, *, rough: bool, hill: bool, road: bool, width: float, length: float, words: str
-) -> PlanObject:
-    """Ground along a way, level at both `ends`, where a vehicle of a width and length [m] starts and stops."""
+def land(way: Way, *, rough: bool, hill: bool, road: bool, width: float, length: float, words: str) -> PlanObject:
+    """Ground along a way, level at both ends, where a vehicle of a width and length [m] starts and stops."""
     layers: list[NoiseLayer | HillLayer | LevelLayer | RoadLayer] = []
     layers += [ROUGH] if rough else [GENTLE] if road else []
     if hill:
         radius = 0.5 * math.pi * HILL / math.tan(math.radians(STEEPEST))
         layers.append(HillLayer(position=hill_on(way), radius=math.ceil(radius), height=HILL))
-    layers += [LevelLayer(position=at, radius=round(0.5 * length + EVEN, 1)) for at in ends]
+    layers += [LevelLayer(position=at, radius=round(0.5 * length + EVEN, 1)) for at in (way[0], way[-1])]
     line = _prolonged(way, length)
     wide = round((ROAD if road else TRACK) * width, 1)
     if road:

@@ -167,10 +167,8 @@ def _check_carries(block: Block, words: str) -> None:
 
 
 def _way(site: Site, kind: str, speed: float) -> tuple[tuple[tuple[float, float], ...], tuple[float, ...], float]:
-    """Points of the rear axle, how long it waits there [s], and when it comes to the first [s]."""
-    spec = site.block.spec
-    middle = _middle(spec) - spec.wheelbase / 2
-    route = ((tidy(round(middle, 3)), 0.0), (tidy(round(site.stands - spec.wheelbase / 2, 3)), 0.0))
+    """Points that it comes to, how long it waits there [s], and when it comes to the first [s]."""
+    route = ((tidy(round(_middle(site.block.spec), 3)), 0.0), (tidy(site.stands), 0.0))
     arrives = _takes(site, kind, speed, route[:1], ())
     wait = math.ceil(2.0 * (ARRIVES + SWINGS * site.block.period)) / 2.0
     return route, (wait, 0.0), arrives
@@ -184,8 +182,7 @@ def _middle(spec: VehicleSpec) -> float:
 def _takes(
     site: Site, kind: str, speed: float, route: tuple[tuple[float, float], ...], waits: tuple[float, ...]
 ) -> float:  # fmt: skip
-    start = (-site.stands - site.block.spec.wheelbase / 2, 0.0)
-    return drive_time(kind, [start, *route], speed, waits=waits)
+    return drive_time(kind, [(-site.stands, 0.0), *route], speed, waits=waits)
 
 
 def _built(site: Site, cast: Cast, over: Thing) -> list[PlanObject]:

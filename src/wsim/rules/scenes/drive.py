@@ -64,8 +64,8 @@ class _Drive:
 
     @property
     def way(self) -> Way:
-        """Of the middle of its rear axle, from where it starts: (x, y) [m]."""
-        start, length = -0.5 * self.distance - 0.5 * self.spec.wheelbase, self.distance + OVER
+        """From where it starts: (x, y) [m]."""
+        start, length = -0.5 * self.distance, self.distance + OVER
         if self.distance < STRAIGHT:
             return [(round(start, 3), 0.0), (round(start + length, 3), 0.0)]
         aside = min(0.1 * self.distance, MOST_ASIDE / max(map(abs, WINDING)))
@@ -94,7 +94,7 @@ def build_drive(cast: Cast, taken: set[str]) -> Part:
         raise NotUnderstood([known[0].words], "lets a vehicle drive over land, and nothing else with either:")
     asked = _asked(cast, driving[0])
     spec, way = asked.spec, asked.way
-    start, yaw = _ahead(way, 0, 0.5 * spec.wheelbase)
+    start, yaw = way[0], _heading(way)
     takes = _duration(asked, way)
     if cast.duration is not None and cast.duration < takes:
         raise UserError(
@@ -173,22 +173,18 @@ def _country(asked: _Drive, cast: Cast) -> Country:
     """Ground, and what stands on it; how many of what has no number is chosen here."""
     said = {thing.words for thing in (*asked.rocks, *asked.trees)}  # they are beside its way, as many as fit that
     cast.assumptions = [one for one in cast.assumptions if one.subject not in said]
-    ends = [_ahead(asked.way, end, 0.5 * asked.spec.wheelbase)[0] for end in (0, -1)]
-    ground = land(asked.way, ends, rough=bool(asked.rough), hill=bool(asked.hills), road=bool(asked.roads),
+    ground = land(asked.way, rough=bool(asked.rough), hill=bool(asked.hills), road=bool(asked.roads),
                   width=asked.spec.track + asked.spec.wheel_width, length=asked.spec.length,
                   words=", ".join(thing.words for thing in (*asked.rough, *asked.roads, *asked.hills)))  # fmt: skip
     return Country(ground, scattered(asked.way, asked.rocks, asked.trees, asked.spec.width, asked.distance, cast))
 
 
-def _ahead(way: Way, end: int, by: float) -> tuple[tuple[float, float], float]:
-    """The place straight ahead [m] of a smooth line's start (end 0) or end (-1), and its heading there [deg]."""
+def _heading(way: Way) -> float:
+    """Of a smooth line through points where it begins [deg]."""
     from wsim.scene import Road  # as above
 
-    line = Road(way).line()
-    (ax, ay), (bx, by_) = line[:2] if end == 0 else line[-2:]
-    turn = math.atan2(by_ - ay, bx - ax)
-    x, y = way[end]
-    return (round(x + by * math.cos(turn), 3), round(y + by * math.sin(turn), 3)), round(math.degrees(turn), 2) + 0.0
+    (ax, ay), (bx, by) = Road(way).line()[:2]
+    return round(math.degrees(math.atan2(by - ay, bx - ax)), 2) + 0.0
 
 
 def _duration(asked: _Drive, way: Way) -> float:
