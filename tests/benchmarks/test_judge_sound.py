@@ -2,13 +2,15 @@
 
 import dataclasses
 
+import numpy as np
 import pytest
 
 from benchmarks.judge_sound import EVIDENCE, outcomes, simulated, stage_of, world_of
-from tests.judge.theory import ask, edited
+from tests.judge.theory import ask, edited, with_world
 from wsim.judge.checks.energy import CheckEnergy
 from wsim.judge.checks.forces import CheckForces
 from wsim.judge.checks.recorded import CheckRecordedForces
+from wsim.judge.checks.recorded_ties import CheckRecordedTies
 
 
 @pytest.mark.parametrize(
@@ -64,3 +66,49 @@ def test_friction_leans_as_the_normals_under_a_box_in_a_valley_do():
     sums[:, :3] = track.along + 0.9 * (track.impulse - track.along)
     less = dataclasses.replace(recording, contacts=dataclasses.replace(track, sums=sums))
     assert any("slip, and rub" in message for message in fails(CheckRecordedForces(), less))
+
+
+def test_a_ball_that_hops_in_every_interval_is_not_one_that_stands():
+    """Each hop takes 1 - e^2 of its height; that a tenth of its speed is gone besides is found."""
+    recording, row = recorded("thrown", 32)
+    assert fails(CheckEnergy(), recording) == []
+    slow = edited(
+        recording, "body_qd", (slice(15, None), row["thrown0_0"], 2), -0.1 * recording.body_qd[15:, row["thrown0_0"], 2]
+    )
+    assert any("that nothing takes" in message for message in fails(CheckEnergy(), slow))
+
+
+def test_capsules_that_rock_side_by_side_push_at_both_ends():
+    """One rolls over another, 3 mrad askew, and is held now at one end, now at the other; a turn besides is found."""
+    recording, row = recorded("rolling", 27)
+    assert fails(CheckForces(), recording) == []
+    turn = 0.1 * recording.body_qd[30, row["rolling1_2"], 3:]
+    turned = edited(recording, "body_qd", (slice(30, None), row["rolling1_2"], slice(3, 6)), turn)
+    assert any("rolling1_2 is turned" in message for message in fails(CheckForces(), turned))
+
+
+def test_a_damped_spring_that_swings_by_a_radian_a_frame():
+    """Two frames do not tell what its damper takes in between, their lengths besides do: a tenth less is found."""
+    recording, _ = recorded("springs", 26)
+    assert fails(CheckEnergy(), recording) == []
+    springs = [each.model_copy(update={"damping": 0.9 * each.damping}) for each in recording.world.springs]
+    assert any(
+        "that nothing takes" in message for message in fails(CheckEnergy(), with_world(recording, springs=springs))
+    )
+
+
+def test_a_rope_that_hangs_slack_at_the_start_comes_taut_in_the_first_interval():
+    """The jerk takes 92 % of what its bob has, and all of it pulls as the rope lies then.
+
+    That its speed is a tenth less than it had to be is found, and so is a tenth of a pull aside.
+    """
+    recording, row = recorded("ropes", 24)
+    assert fails(CheckEnergy(), recording) + fails(CheckRecordedTies(), recording) == []
+    bob = recording.body_qd[20:, row["ropes0_0"], :3]
+    slow = edited(recording, "body_qd", (slice(20, None), row["ropes0_0"], slice(3)), -0.1 * bob)
+    assert any("ropes0_0 gains" in message for message in fails(CheckEnergy(), slow))  # where it is lower it lacks most
+    cords = recording.ties.cords.copy()
+    aside = np.cross(cords[20, 0, :3], (0.0, 0.0, 1.0))
+    cords[20, 0, :3] += 0.1 * np.linalg.norm(cords[20, 0, :3]) * aside / np.linalg.norm(aside)
+    bent = dataclasses.replace(recording, ties=dataclasses.replace(recording.ties, cords=cords))
+    assert any("pulls beside its way" in message for message in fails(CheckRecordedTies(), bent))

@@ -165,3 +165,29 @@ def test_the_nearest_point_is_found_from_far_and_near(reach):
     best = int(np.argmin(found.gap))
     assert found.gap[best] == pytest.approx(0.0, abs=1e-6)
     assert found.normal[best] * (1.0 if found.one[best] == 0 else -1.0) == pytest.approx(way, abs=1e-3)
+
+
+def side_by_side(skew):
+    """Two capsules, one on the other, that touch at one end and whose axes go apart by an angle from there."""
+    low, high = solid("capsule", (R, H), "low"), solid("capsule", (R, H), "high")
+    turn = np.array([np.cos(skew / 2), np.sin(skew / 2), np.sin(skew / 2), np.cos(skew / 2)]) * np.sqrt(0.5)
+    t, axis = times(0.1), np.array([-np.sin(skew), np.cos(skew), 0.0])
+    place = np.tile([(0.0, 0.0, 0.0), 0.5 * H * (axis - (0.0, 1.0, 0.0)) + (0.0, 0.0, 2 * R)], (len(t), 1, 1))
+    rotation = np.tile([LYING, turn], (len(t), 1, 1))
+    evidence = Evidence(record([low, high], place, np.zeros_like(place), t, rotation=rotation))
+    return Touching.of(evidence).at(evidence.body_q[0], 1e-3)
+
+
+@pytest.mark.parametrize("skew", [1e-6, 0.003, 0.05])
+def test_capsules_side_by_side_bear_at_both_ends(skew):
+    """They are apart by (s l)^2 / 4 r at one end, s their angle, l their length."""
+    found = side_by_side(skew)
+    for end, gap in ((-0.5 * H, 0.0), (0.5 * H, (skew * H) ** 2 / (4.0 * R))):
+        there = np.abs(found.point[:, 1] - end) < 0.02 * H
+        assert there.any()
+        assert np.abs(found.gap[there]).max() == pytest.approx(gap, rel=0.05, abs=2e-6)
+
+
+def test_capsules_across_each_other_touch_in_one_point():
+    found = side_by_side(0.5)
+    assert found.point == pytest.approx(np.tile((0.0, -0.5 * H, R), (len(found), 1)), abs=1e-4)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.judge.theory import ask, with_world
-from wsim.judge.books.relaxing import relaxation, taken
+from wsim.judge.books.relaxing import relaxation, resolved, taken
 from wsim.judge.checks.energy import CheckEnergy
 from wsim.recording import read
 from wsim.scene import Scene
@@ -42,6 +42,27 @@ def test_the_work_is_that_of_the_law(rate, ratio, force):
     assert unsure[0] < 1e-3 * work[0]
     trapezoid = 0.5 * H * (v[0] ** 2 + v[1] ** 2)
     assert abs(trapezoid / work[0] - 1.0) > 0.1
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.7, 1.6])
+@pytest.mark.parametrize("swing", [0.3, 0.8, 1.2])
+def test_a_swing_that_frames_resolve(swing, phase):
+    """The rate is cos(w t + p), by w h rad a frame; its square is integrated to 1 % in each frame, and over the run."""
+    t = np.arange(30.0)
+    at = swing * t + phase
+    work = np.diff(0.5 * t + np.sin(2.0 * at) / (4.0 * swing)) * H
+    found, unsure = resolved(np.cos(at), H * np.sin(at) / swing, np.full(len(t) - 1, H))
+    assert np.abs(found - work).max() < 0.01 * H * (swing / 1.2) ** 4
+    assert abs(found.sum() / work.sum() - 1.0) < 0.01 * (swing / 1.2) ** 4
+    assert unsure.mean() < 0.01 * H
+
+
+@pytest.mark.parametrize("when", [0.02, 0.3, 0.5, 0.9])
+def test_what_a_blow_does_to_the_rate_is_unsure(when):
+    """It goes from 0 to 1 at some moment of an interval."""
+    rate, way = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]), np.array([0.0, 0.0, 1.0 - when, 1.0, 1.0])
+    found, unsure = resolved(rate, H * np.concatenate([[0.0], np.cumsum(way)]), np.full(5, H))
+    assert abs(found[2] - (1.0 - when) * H) <= unsure[2] * (1.0 + 1e-9)
 
 
 def test_what_frames_resolve_is_none_of_it():

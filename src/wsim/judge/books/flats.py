@@ -1,12 +1,13 @@
-"""Where cylinders touch with an end or along a side, and boxes with faces: all over what both share.
+"""Where cylinders touch with an end or along a side, capsules side by side, and boxes with faces: all that both share.
 
 MuJoCo tells a point or two of it.
 
 Of what stands flat, or lies along a line, any point may bear, and which one a search for the nearest finds is chance:
 of a roller across a dome it may be the roller's end. Here an end's disc is held against the points of the other shape
 that come nearest to it, and against a box's edge across it; a plane or a box's face against points of the cylinder's
-rim or side; and a side against what is round, or a box's edge. Where boxes' faces lie on each other with fewer points
-than a face has, each is held against the other's corners. Each point has its own gap.
+rim or side; and a side against what is round, or a box's edge. Of two capsules nearly side by side one point is the
+nearest, at either end, and goes from one to the other and back as they rock by 1e-6 rad. Where boxes' faces lie on each
+other with fewer points than a face has, each is held against the other's corners. Each point has its own gap.
 """
 
 from __future__ import annotations
@@ -36,6 +37,7 @@ CORNERS = 0.5 * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (
 HAIR = 1e-9  # of a line, by which points stay within a rim or an edge
 FACE = 4  # corners of a box's face
 KINDS = {("cylinder", other) for other in ("sphere", "capsule", "box", "cylinder", "plane")}
+KINDS.add(("capsule", "capsule"))
 Z = np.array([0.0, 0.0, 1.0])
 _POINTS = np.zeros((0, 3))
 
@@ -65,7 +67,8 @@ def flats(pairs: Rows, normal: Floats, at: Rows, shapes: Sequence[Shape], places
     kinds = np.array([shape.kind for shape in shapes])[pairs[first]]
     boxes = np.all(kinds == "box", axis=1) & (counts < FACE)
     parts = [_boxes(pairs, normal, first[boxes], shapes, places)]
-    for n in first[np.any(kinds == "cylinder", axis=1)].tolist():
+    lines = np.any(kinds == "cylinder", axis=1) | np.all(kinds == "capsule", axis=1)
+    for n in first[lines].tolist():
         for side, sign in ((0, 1.0), (1, -1.0)):
             own, other = (int(s) for s in pairs[n, [side, 1 - side]])
             if (shapes[own].kind, shapes[other].kind) not in KINDS:
@@ -100,10 +103,11 @@ def _boxes(pairs: Rows, normal: Floats, chosen: Rows, shapes: Sequence[Shape], p
 
 
 def _shared(own: tuple[Shape, Floats], other: tuple[Shape, Floats], outwards: Floats) -> list[Points]:
-    """What an end or a side of a cylinder that faces another shape shares with it."""
+    """What an end or a side of a cylinder, or a capsule's side, that faces another shape shares with it."""
     (shape, pose), (against, there) = own, other
     axis = rotate(pose[3:], Z)
     upright, lies = abs(axis @ outwards) >= np.cos(LEANS), abs(axis @ outwards) <= np.sin(LEANS)
+    upright &= shape.kind == "cylinder"
     if against.kind == "plane":  # of a side MuJoCo finds both ends
         return [_on_plane(_facing(shape, pose, outwards), there)] if upright else []
     found = []
@@ -113,8 +117,9 @@ def _shared(own: tuple[Shape, Floats], other: tuple[Shape, Floats], outwards: Fl
             edges = _edges(against, there, -outwards)
             points = np.concatenate([points, *(_across(edge, down, pose, shape.size[0]) for edge in edges)])
         found.append(_on_disc(shape, pose, down, points))
+    across = shape.kind == "capsule" and abs(axis @ rotate(there[3:], Z)) < np.cos(LEANS)
     rounded = against.kind in ("sphere", "capsule") or abs(rotate(there[3:], Z) @ outwards) <= np.sin(LEANS)
-    if lies and against.kind != "box" and rounded:  # a cylinder's end is no ball's
+    if lies and against.kind != "box" and rounded and not across:  # a cylinder's end is no ball's
         found.append(_on_side(shape, pose, *_round(against, there)))
     if (upright or lies) and against.kind == "box":
         points = _facing(shape, pose, outwards)

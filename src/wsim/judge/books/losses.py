@@ -21,7 +21,7 @@ from scipy.sparse.csgraph import connected_components
 from wsim.geometry.rotations import rotate
 from wsim.judge.books import relaxing
 from wsim.judge.books.driven import changes_hands
-from wsim.judge.books.led import STEADY, Led, late, over, told
+from wsim.judge.books.led import STEADY, Led, late, told
 from wsim.judge.books.phases import sinking
 from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.books.recorded_ties import OWN
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 
 STRAY = 0.2  # of the way of a step: places that are farther off tell nothing of the steps' order
 WINDOW = 5  # intervals
+HOPS = 2.0  # steps of gravity
 
 
 @dataclass(frozen=True)
@@ -138,12 +139,15 @@ class Losses:
         fall = self._evidence.gravity * h
         closes = np.abs(np.einsum("ni,ni->n", contacts.slip[:, 0], normal))
         speeds, steady = self._within(rows, (pressed > self._steady) | (closes > 2.0 * fall))
-        lasts = np.where(track.frame == 1, 0.0, steady)  # what stands may have been set down from a hair above: a blow
+        bounce, rolling = self._laws
+        # What stands may have been set down from a hair above: a blow. What hops in each interval presses as evenly as
+        # what stands; but that comes or goes at no end by more than a step's fall.
+        hops = (bounce > 0.0) & (closing > HOPS * self._evidence.gravity * motion.dt)
+        lasts = np.where((track.frame == 1) | hops, 0.0, steady)
         hit = pressed > steady
         many = hit & self._shared  # a blow goes on to others, and frames show nothing of how fast
         approach = np.where(many, speeds[0], closing) + fall
         slip = np.where(many, np.maximum(slip, speeds[1]), slip + np.where(pressed > lasts, fall, 0.0))
-        bounce, rolling = self._laws
         blow = 0.5 * (1.0 - bounce) * np.where(hit, pressed - steady, 0.0) * approach
         # One that surfaces still come nearer in at the end goes on: its part loses by the mean of both speeds.
         goes_on = np.maximum(-np.einsum("ni,ni->n", contacts.slip[:, 1], normal), 0.0)
@@ -341,8 +345,9 @@ class Losses:
             if spring.damping == 0.0 or not held & ours:
                 continue
             track = track_of_spring(self._evidence, spring)
-            ratio, resolved = spring.stiffness / spring.damping, np.array(over(self._evidence, track.rate**2))
-            within = relaxing.taken(track.rate, track.length, spring.rest_length, ratio, self._motion.h)
+            ratio, h = spring.stiffness / spring.damping, self._motion.h
+            within = relaxing.taken(track.rate, track.length, spring.rest_length, ratio, h)
+            resolved = relaxing.resolved(track.rate, track.length, h)
             found += spring.damping * np.where(np.isnan(within), resolved, within)
         return found[0], found[1]
 
@@ -357,8 +362,10 @@ class Losses:
             done.add(cord)
             tension = np.maximum(self.ties.track.tension[1:, n].astype(np.float64), 0.0)
             rate = np.abs(self.ties.ropes.rate(self._evidence.world.ropes[cord - springs]))
+            jerks = self.ties.ropes.pulls[cord - springs].jerks  # in one interval after another, maybe
             starts = tension[:1] * (rate[0] <= self._evidence.gravity * self._motion.dt)  # or it comes taut at once
             around = np.concatenate([starts, tension, tension[-1:]])
-            excess = np.maximum(tension - STEADY * np.minimum(around[2:], around[:-2]), 0.0)
+            steady = np.where(jerks, 0.0, STEADY * np.minimum(around[2:], around[:-2]))
+            excess = np.maximum(tension - steady, 0.0)
             found += excess * (np.maximum(rate[1:], rate[:-1]) + self._evidence.gravity * self._motion.h)
         return found

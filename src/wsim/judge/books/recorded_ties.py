@@ -306,7 +306,7 @@ class RecordedTies:
         scale = np.repeat([1.0, 1.0 / arm], 3)
         off = np.linalg.norm((given - tension[:, None] * mean) * scale, axis=1)
         turned = np.maximum(np.linalg.norm((last - first) * scale, axis=1), self._swept(cord, row, arm))
-        change = _turn(tension[:, None])
+        change = np.where(self._jerks(cord), np.abs(tension), _turn(tension[:, None]))
         late = 0.5 * np.minimum(evidence.motion.dt / evidence.motion.h, 1.0)
         # One that goes from push to pull is next to nothing on the whole, and yet gives by how far its way turns: at
         # most an eighth of its change, where that comes at once halfway, and a twelfth where it comes evenly.
@@ -317,6 +317,11 @@ class RecordedTies:
             along = track_of_spring(evidence, springs[cord]).along
             may = may + 0.5 * np.abs(tension) * arms.bent(np.tile(along, 2))[:, 0]
         return off, may, np.abs(tension)
+
+    def _jerks(self, cord: int) -> Bools:
+        """Where a rope comes taut or goes slack, (T - 1,): all that it pulls it may pull at one end of the interval."""
+        springs = len(self._evidence.world.springs)
+        return self.ropes.pulls[cord - springs].jerks if cord >= springs else np.zeros(len(self.intervals), dtype=bool)
 
     def _swept(self, cord: int, row: int, arm: float) -> Floats:
         """How far a spring's way on a body turns within each interval, there and back too, (T - 1,).

@@ -125,6 +125,29 @@ def taken(rate: Floats, length: Floats, rest: float, ratio: float, h: Floats) ->
     return np.where(beside, least + 0.5 * spread, found), np.where(beside, 0.5 * np.abs(spread), unsure)
 
 
+def resolved(rate: Floats, length: Floats, h: Floats) -> tuple[Floats, Floats]:
+    """The integral of a rate's square over intervals that frames resolve, and how unsure it is, (T - 1,) each [m^2/s].
+
+    Of the parabola v + d s + b s (1 - s), s from 0 to 1, that begins and ends as the rate does and takes the length
+    where it goes: that of a swing of 1.2 rad a frame is known to 1 % by it, and to 30 % by Euler and Maclaurin from the
+    squares at both ends. What is beyond is c s (1 - s) (1 - 2 s) to the next order, c by slopes that are the means of
+    those of the parabolas at both sides of a frame. A blow that changes the rate by d at once makes c = d / 2, and the
+    parabola's error is d^2 / 6 at most: 2 / 3 c^2.
+
+    Args:
+        rate: Of the length, (T,) [m/s].
+        length: (T,) [m].
+        h: Of each interval, (T - 1,) [s].
+    """
+    change, mean = np.diff(rate), 0.5 * (rate[1:] + rate[:-1])
+    bulge = 6.0 * (np.diff(length) / h - mean)
+    begins, ends = (change + bulge) / h, (change - bulge) / h
+    slopes = np.concatenate([begins[:1], 0.5 * (begins[1:] + ends[:-1]), ends[-1:]])
+    beyond = 0.5 * h * (slopes[1:] + slopes[:-1]) - change
+    square = mean**2 + change**2 / 12.0 + bulge * mean / 3.0 + bulge**2 / 30.0
+    return square * h, beyond**2 * h / 1.5
+
+
 def _gone(rate: float, h: float) -> float:
     """The integral of exp(-rate t) over h [s]."""
     return h if rate * h < 1e-12 else float(-np.expm1(-rate * h)) / rate

@@ -269,10 +269,9 @@ class Touching:
 
     @cached_property
     def _flat(self) -> bool:
-        """Whether there are solids with flat sides beside others."""
-        return sum(shape.kind in ("box", "cylinder") for _, _, shape in self.shapes) > 1 or any(
-            shape.kind == "cylinder" for _, _, shape in self.shapes
-        )
+        """Whether there are solids with flat or straight sides beside others."""
+        kinds = [shape.kind for _, _, shape in self.shapes]
+        return "cylinder" in kinds or kinds.count("box") > 1 or kinds.count("capsule") > 1
 
     def _flats(self, pairs: Rows, normal: Floats, at: Rows, poses: Floats) -> tuple[Contacts, Rows]:
         """Further points of what is flat among contacts, each at one of several poses; and at which these are."""
