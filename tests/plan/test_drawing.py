@@ -197,9 +197,10 @@ def test_what_walks_or_drives_costs_milliseconds_a_step(name: str, steps: int) -
     assert 2.5e-3 < cost.wall / cost.steps < 5e-3
 
 
-def test_there_are_ten_plans_written_by_hand() -> None:
+def test_there_are_eleven_plans_written_by_hand() -> None:
     assert [path.stem for path in EXAMPLES] == [
         "buggy_floating_bridge",
+        "car_brakes",
         "go2_kerbs",
         "go2_office",
         "go2_pushed",

@@ -47,6 +47,19 @@ def test_a_camera_follows_a_vehicle() -> None:
     assert [camera.follows for camera in describe(scene.stage).cameras] == ["/World/car"]
 
 
+def test_a_driver_has_its_arcs_and_its_brake() -> None:
+    legs = [[-5.0, 0.0], {"radius": 6.0, "angle_deg": 90.0}, {"radius": 8.0, "angle_deg": -45.0}]
+    plan = a_plan(driven(route=legs, waits=[0.0, 1.5], brake={"at": [-5.0, 0.0], "time": 9.0, "share": 0.5}))
+    assert Plan.model_validate_json(plan.model_dump_json()) == plan
+    text = compose(plan)
+    assert "path=Legs((-10.0, 0.0), 0.0, [(-5.0, 0.0), Arc(6.0, 90.0), Arc(8.0, -45.0)]).line()" in text
+    assert "brake=Brake(at=(-5.0, 0.0), time=9.0, share=0.5)" in text
+    assert "waits=[(-5.0, 0.0, 0.0), (1.0, 6.0, 1.5)]" in text
+    assert "from wsim.scene import Arc, Brake, Driver, Legs, Scene\n" in text
+    assert [problem.message for problem in validate(text, plan)] == []
+    exec(compile(text, "program.py", "exec"), {})
+
+
 def test_a_vehicle_of_its_own_speed_starts_its_driver_with_it() -> None:
     text = compose(a_plan({**driven(), "velocity": [4.0, 0.0, 0.0]}))
     assert "position=(-10.0, 0.0, 0.0), speed=4.0)" in text and "start_speed=4.0" in text

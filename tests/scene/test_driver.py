@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.ways import lane_change, ring
-from wsim.scene import Driver, SceneError, VehicleSpec
+from wsim.scene import Brake, Driver, SceneError, VehicleSpec
 from wsim.scene.vehicle_spec import CORNERS, preset
 
 SPEC = preset("hmmwv")
@@ -246,6 +246,13 @@ def test_it_waits_on_a_slope_whatever_it_carries(lean, more):
         ({"waits": [(5.0, 0.5, 1.0)]}, "is not on the path"),
         ({"waits": [(5.0, 0.0, 1.0), (3.0, 0.0, 1.0)]}, "waits[1] = (3.0, 0.0, 1.0) is not on the path, after"),
         ({"waits": [(5.0, 0.0, -1.0)]}, "waits[0] = -1 must be >= 0 s"),
+        ({"brake": 5.0}, "brake = 5.0 must be a Brake"),
+        ({"brake": Brake()}, "brake says neither at, nor time, nor near"),
+        ({"brake": Brake(near="ball")}, "near and within go together"),
+        ({"brake": Brake(near=4, within=1.0)}, "brake.near = 4 must be the name of a body"),
+        ({"brake": Brake(at=(5.0, 1.0))}, "brake.at = (5.0, 1.0) is 1 m beside the path; give a place on it"),
+        ({"brake": Brake(time=-1.0)}, "brake.time = -1 must be >= 0 s"),
+        ({"brake": Brake(time=1.0, share=2.0)}, "brake.share = 2 must be <= 1"),
         ({"path": [(0.0, 0.0)]}, "path has 1 points; it must be 2"),
         ({"path": [(0.0, 0.0), (0.0, math.nan)]}, "path[1][1] = nan must be finite"),
         ({"speed": 0.0}, "speed = 0 must be > 0"),

@@ -7,12 +7,13 @@ import pytest
 
 from tests.ways import lane_change, ring
 from wsim.program.control_world import INPUTS, OUTPUTS, ControlLayout
-from wsim.scene import Driver, Scene
+from wsim.scene import Arc, Brake, Driver, Legs, Scene
+from wsim.scene.vehicle_spec import preset
 from wsim.sim import Simulation
 from wsim.sim.control import ArrayController, driven_joints
 
 
-def driven(driver, tmp_path, seconds, *, speed=0.0, pitch=0.0, slope=0.0, rate=20.0):
+def driven(driver, tmp_path, seconds, *, speed=0.0, slope=0.0, rate=20.0, kind="hmmwv"):
     """Its position (frames, 2) [m], forward speed (frames,) and time, of a truck that starts at the origin."""
     scene = Scene()
     scene.simulation(duration=seconds, frame_rate=rate)
@@ -22,7 +23,7 @@ def driven(driver, tmp_path, seconds, *, speed=0.0, pitch=0.0, slope=0.0, rate=2
                   position=(0.5 * math.sin(lean), 0.0, -0.5 * math.cos(lean)))  # fmt: skip
     else:
         scene.ground(friction=0.9)
-    scene.vehicle("truck", "hmmwv", pitch_deg=-slope, speed=speed)
+    scene.vehicle("truck", kind, pitch_deg=-slope, speed=speed)
     stage = scene.save(tmp_path / "v.usda")
     found, arrays = [], {}
 
@@ -82,3 +83,42 @@ def test_it_holds_its_speed_up_a_hill(tmp_path):
     assert found[rising, 2] == pytest.approx(np.sqrt(2.0 * 2.0 * found[rising, 0]), rel=0.05)
     assert rising.sum() > 5
     assert found[found[:, 3] > 2.5, 2] == pytest.approx(3.0 * np.ones((found[:, 3] > 2.5).sum()), rel=0.05)
+
+
+@pytest.mark.parametrize(("kind", "share"), [("hmmwv", 1.0), ("hmmwv", 0.4), ("polaris", 1.0)])
+def test_it_brakes_hard_at_a_place(kind, share, tmp_path):
+    """From 10 m/s: locked in v² / (2 mu g), else in v² / (2 a) with a = 4 T / (r (m + 4 I / r²)) and rolling, to 5 %.
+
+    After that it stands where it is.
+    """
+    spec = preset(kind)
+    path = [(x, 0.0) for x in np.arange(0.0, 40.0, 0.5)]
+    driver = Driver("truck", kind, path=path, speed=10.0, start_speed=10.0, brake=Brake(at=(3.0, 0.0), share=share))
+    found = driven(driver, tmp_path, 3.2 if share == 1.0 else 4.0, speed=10.0, kind=kind)
+    locked = 0.9 * 9.81
+    torque = share * 4.0 * spec.brake_torque / spec.wheel_radius + spec.rolling * spec.mass * 9.81
+    slows = min(locked, torque / spec.effective_mass)
+    assert (slows < locked) == ((kind, share) != ("hmmwv", 1.0))
+    assert found[-1, 0] - 3.0 == pytest.approx(10.0**2 / (2.0 * slows), rel=0.05)
+    assert np.ptp(found[-10:, 0]) < 2e-3
+
+
+def test_its_brakes_hold_it_on_a_slope(tmp_path):
+    """Up 10 deg from 3 m/s, at once: v² / (2 g (mu cos + sin)) along it, then within 2 mm for two seconds."""
+    path = [(x, 0.0) for x in np.arange(0.0, 20.0, 0.5)]
+    driver = Driver("truck", "hmmwv", path=path, speed=3.0, start_speed=3.0, brake=Brake(time=0.0))
+    found = driven(driver, tmp_path, 4.0, speed=3.0, slope=10.0)
+    lean = math.radians(10.0)
+    slows = 9.81 * (0.9 * math.cos(lean) + math.sin(lean))
+    assert found[30, 0] / math.cos(lean) == pytest.approx(3.0**2 / (2.0 * slows), abs=0.05)
+    assert np.ptp(found[40:, 0]) < 2e-3
+
+
+def test_it_drives_round_an_arc_of_legs(tmp_path):
+    """At 4 m/s, 4 m straight on, then a quarter of 10 m to the left: within 0.15 m of it, to its end."""
+    legs = Legs((0.0, 0.0), 0.0, [(4.0, 0.0), Arc(10.0, 90.0)])
+    driver = Driver("truck", "hmmwv", path=legs.line(), speed=4.0, start_speed=4.0)
+    found = driven(driver, tmp_path, 6.0, speed=4.0)
+    round_it = found[found[:, 0] > 4.0]
+    assert np.abs(np.hypot(round_it[:, 0] - 4.0, round_it[:, 1] - 10.0) - 10.0).max() < 0.15
+    assert found[-1, :2] == pytest.approx([14.0, 10.0], abs=0.1)

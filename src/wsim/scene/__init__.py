@@ -18,12 +18,14 @@ schema.register()
 
 from wsim.scene.areas import Area  # noqa: E402
 from wsim.scene.authoring import Handle  # noqa: E402
+from wsim.scene.brakes import Brake  # noqa: E402
 from wsim.scene.compounds import Part  # noqa: E402
 from wsim.scene.driver import Driver  # noqa: E402
 from wsim.scene.errors import SceneError  # noqa: E402
 from wsim.scene.fluids import Fluid  # noqa: E402
 from wsim.scene.joints import Drive  # noqa: E402
 from wsim.scene.layers import Hill, Image, Kerb, Level, Noise, Ramp, Step, Surface  # noqa: E402
+from wsim.scene.legs import Arc, Legs  # noqa: E402
 from wsim.scene.materials import Material  # noqa: E402
 from wsim.scene.roads import Road  # noqa: E402
 from wsim.scene.robots import Robot  # noqa: E402
@@ -35,7 +37,9 @@ from wsim.scene.vehicle_spec import VehicleSpec  # noqa: E402
 from wsim.scene.vehicles import Vehicle  # noqa: E402
 
 __all__ = [
+    "Arc",
     "Area",
+    "Brake",
     "Drive",
     "Driver",
     "Fluid",
@@ -43,6 +47,7 @@ __all__ = [
     "Hill",
     "Image",
     "Kerb",
+    "Legs",
     "Level",
     "Material",
     "Noise",

@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 
 from wsim.defaults import GRAVITY
 from wsim.limits import MAX_DRIVE_SPEED
+from wsim.scene.brakes import Brake, Pressed
 from wsim.scene.layers import polyline
 from wsim.scene.validate import Call, shown
 from wsim.scene.vehicle_spec import CORNERS, VehicleSpec, spec_of
@@ -67,8 +68,8 @@ class _Profile:
 class Driver:
     """Steers, drives and brakes a vehicle along a line by its steering's targets and torques on its axles.
 
-    Where it waits it comes to stand, and sets off again after so long. Its `vehicle` is driven by nothing else: `drive`
-    and `brake` of it are not called. Torques are bounded by the spec's
+    Where it waits it comes to stand, and sets off again after so long; from its `brake` on it brakes for good. Its
+    `vehicle` is driven by nothing else: `drive` and `brake` of it are not called. Torques are bounded by the spec's
     engine at the speed there is, and by its brakes; a wheel that slips by more than 0.6 m/s and 12 % of the speed gets
     none until it grips.
     """
@@ -80,6 +81,7 @@ class Driver:
     _before: Floats  # how far that is ahead [m]
     _lack: Floats  # of speed, added up over time [m]
     _angle: Floats  # of the bicycle [rad]
+    _braked: NDArray[np.bool_]  # whether its brakes are pressed for good
     _fresh: bool
     _last: float  # when it was asked last [s]
 
@@ -96,6 +98,7 @@ class Driver:
         lateral: float = 3.0,
         stop: bool = True,
         waits: Sequence[Sequence[float]] = (),
+        brake: Brake | None = None,
     ) -> None:
         """Make a driver.
 
@@ -112,6 +115,7 @@ class Driver:
             stop: Whether to stop at the end of the path, or to go on straight.
             waits: (x, y, seconds) in turn: places on the path [m] where it comes to stand, and for how long [s]; for
                 0 s it goes by.
+            brake: When all brakes are pressed, for good; until then it does not slow down for the end of the path.
 
         Raises:
             SceneError: If the path is none, or a number is out of range.
@@ -123,10 +127,11 @@ class Driver:
         points = polyline(call, path, "path")
         top = call.positive("speed", speed, MAX_DRIVE_SPEED, "m/s")
         begins = call.within("start_speed", start_speed, 0.0, MAX_DRIVE_SPEED, "m/s")
-        self._stop = call.flag("stop", stop)
+        self._stop = call.flag("stop", stop) and brake is None
         limits = [call.positive(name, value, 20.0, "m/s^2") for name, value in
                   (("acceleration", acceleration), ("braking", braking), ("lateral", lateral))]  # fmt: skip
         self._waits, self._braking = _waits(call, points, waits), limits[1]
+        self._brake, self._brakes_at = _brake(call, points, brake)
         stands = [place for place, _ in self._waits]
         self._profile = _profile(points, top, begins, *limits, stop=self._stop, stands=stands)
         self._begin(1)
@@ -145,12 +150,18 @@ class Driver:
         self._way = self._nearest(place[:, :2])
         self._wait(step)
         self._steer(world, rear[:, :2], forward, speed, step)
+        self._braked |= self._brakes(world, place, speed, t, step)
         self._push(world, forward, speed, step)
 
     @property
     def distance(self) -> Floats:
         """How far along the path it is in each world, (W,) [m]."""
         return self._way
+
+    @property
+    def brakes_at(self) -> float:
+        """How far along the path it brakes for good [m]; inf where its brake names no place."""
+        return self._brakes_at
 
     def speed_at(self, distance: float) -> float:
         """What it is asked for after so much of the path [m/s]."""
@@ -162,7 +173,20 @@ class Driver:
         self._waited, self._left = np.zeros(worlds), np.zeros(worlds, dtype=np.int64)
         self._stands, self._before = np.zeros(worlds, dtype=bool), np.full(worlds, np.inf)
         self._angle = np.zeros(worlds)
+        self._braked, self._pressed = np.zeros(worlds, dtype=bool), Pressed(self.spec, worlds)
         self._fresh, self._last = True, 0.0
+
+    def _brakes(self, world: Any, place: Floats, speed: Floats, t: float, step: float) -> NDArray[np.bool_]:
+        """In which worlds something says that it is to brake, or says so before the next half of a call."""
+        brake, now = self._brake, np.zeros(len(place), dtype=bool)
+        if brake is None:
+            return now
+        if brake.time is not None:
+            now |= t >= brake.time - 1e-6
+        if brake.near is not None and brake.within is not None:
+            off = np.asarray(world.body(brake.near).position, dtype=np.float64) - place
+            now |= np.linalg.norm(off, axis=1) <= brake.within
+        return now | (self._way + 0.5 * step * speed >= self._brakes_at)
 
     def _wait(self, step: float) -> None:
         """Come to where it waits next; count how long it has been there, and leave it after that."""
@@ -250,7 +274,12 @@ class Driver:
             share = np.where(bounded >= 0.0, (corner in spec.driven_corners) / len(spec.driven_corners), 0.25)
             slip = np.asarray(axle.velocity, dtype=np.float64) * spec.wheel_radius - speed
             grips = slip * np.sign(bounded) < _SLIP[0] + _SLIP[1] * np.abs(speed)
-            axle.force = np.where(grips, share * bounded * spec.wheel_radius, 0.0)
+            driven = np.where(grips, share * bounded * spec.wheel_radius, 0.0)
+            if self._brake is not None:
+                held = self._pressed.torque(corner, axle, speed, forward[:, 2], self._brake.share, step)
+                driven = np.where(self._braked, held, driven)
+            axle.force = driven
+            self._pressed.note(corner, axle)
 
 
 def _forward(rotation: Floats) -> Floats:
@@ -259,11 +288,32 @@ def _forward(rotation: Floats) -> Floats:
     return np.stack([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w)], axis=1)
 
 
-def _waits(call: Call, points: Floats, given: Sequence[Sequence[float]]) -> list[tuple[float, float]]:
-    """Places along a line [m], and how long it stands at each [s]."""
+def _brake(call: Call, points: Floats, given: Brake | None) -> tuple[Brake | None, float]:
+    """When it brakes, and where along the line that is at the latest [m]."""
+    if given is None:
+        return None, math.inf
+    if not isinstance(given, Brake):
+        call.fail(f"brake = {shown(given)} must be a Brake")
+    brake = given.checked(call)
+    if brake.at is None:
+        return brake, math.inf
+    place, away = _along(points, brake.at)
+    if away.min() > _OFF:
+        call.fail(f"brake.at = {shown(given.at)} is {away.min():.3g} m beside the path; give a place on it")
+    return brake, float(place[np.flatnonzero(away <= away.min() + 1e-9)[0]])
+
+
+def _along(points: Floats, at: Sequence[float]) -> tuple[Floats, Floats]:
+    """The nearest place to another on each piece of a line: how far along the line, and how far away [m]."""
     begin, way = points[:-1], np.diff(points, axis=0)
     length = np.linalg.norm(way, axis=1)
     along = np.concatenate([[0.0], np.cumsum(length)])
+    foot = np.clip(np.einsum("ni,ni->n", np.subtract(at, begin), way) / length**2, 0.0, 1.0)
+    return along[:-1] + foot * length, np.linalg.norm(begin + foot[:, None] * way - at, axis=1)
+
+
+def _waits(call: Call, points: Floats, given: Sequence[Sequence[float]]) -> list[tuple[float, float]]:
+    """Places along a line [m], and how long it stands at each [s]."""
     found: list[tuple[float, float]] = []
     last = 0.0
     if not isinstance(given, list | tuple):
@@ -273,8 +323,7 @@ def _waits(call: Call, points: Floats, given: Sequence[Sequence[float]]) -> list
             call.fail(f"waits[{k}] = {shown(each)} must be (x, y, seconds)")
         x, y = (call.number(f"waits[{k}]", value) for value in each[:2])
         seconds = call.within(f"waits[{k}]", each[2], 0.0, 3600.0, "s")
-        foot = np.clip(np.einsum("ni,ni->n", (x, y) - begin, way) / length**2, 0.0, 1.0)
-        place, away = along[:-1] + foot * length, np.linalg.norm(begin + foot[:, None] * way - (x, y), axis=1)
+        place, away = _along(points, (x, y))
         after = place > last
         if not (after & (away <= _OFF)).any():
             call.fail(f"waits[{k}] = {shown(each)} is not on the path, after where it starts and waits before")

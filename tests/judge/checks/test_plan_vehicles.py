@@ -211,3 +211,26 @@ def test_on_ice_it_is_rejected_for_its_friction_and_for_what_comes_of_that(short
 
 def test_with_its_motor_off_it_is_rejected_for_not_coming_there(short: Plan, tmp_path: Path) -> None:
     assert failed(short, tmp_path, drives=False) == {"ObjectiveFormula"}
+
+
+@pytest.mark.parametrize("brakes", [True, False])
+def test_a_hard_stop_is_what_theory_says_and_one_that_does_not_brake_is_rejected(brakes: bool, tmp_path: Path) -> None:
+    """From 6 m/s a car stops within v^2 / (2 mu g) = 2.04 m of where it is to brake, to 5 %."""
+    stop = 6.0**2 / (2.0 * 0.9 * 9.81)
+    driver = {"kind": "driver", "route": [[1.0, 0.0]], "speed": 6.0, "brake": {"at": [1.0, 0.0]}}
+    gone = {"op": "gone_between", "object": "car", "axis": "x", "low": 1.0 + 0.95 * stop, "high": 1.0 + 1.05 * stop}
+    formula = {"op": "finally", "seconds": 1.0, "of": gone}
+    plan = Plan.model_validate({
+        "title": "", "prompt": "", "simulation": {"duration": 2.2, "frame_rate": 20},
+        "objects": [
+            {"name": "ground", "role": "terrain", "state": "static", "construction": {"kind": "proxy",
+             "primitive": "ground"}, "material": {"name": "asphalt", "density": 2300, "friction": 0.9}},
+            {"name": "car", "role": "vehicle", "construction": {"kind": "vehicle", "vehicle": "car"},
+             "pose": {"position": [0, 0, 0]}, "velocity": [6, 0, 0], "registration": {"actuation": [driver]}},
+        ],
+        "steps": [{"title": "drive", "objects": ["ground", "car"], "shows": "it stops"}],
+        "objectives": [{"kind": "formula", "object": "car", "formula": formula}],
+    })  # fmt: skip
+    change = ("", "") if brakes else ("brake=Brake(at=(1.0, 0.0))", "stop=False")
+    assert change[0] in compose(plan)
+    assert failed(plan, tmp_path, change) == (set() if brakes else {"ObjectiveFormula"})

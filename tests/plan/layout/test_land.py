@@ -191,6 +191,12 @@ def driven(**actuation: object) -> dict:
         ([LAND, driven(kind="drive")], 'what is driven straight on, or in a circle, has no route'),
         ([LAND, driven(waits=[1.0, 2.0])], "waits has 2 times for the route's 1 points"),
         ([LAND, driven(kind="drive", route=[], waits=[1.0])], 'waits are of the kind "driver"; this is of \'drive\''),
+        ([LAND, driven(brake={})], 'a brake says when: "at" a place, at a "time", or "near" a body'),
+        ([LAND, driven(brake={"near": "ball"})], '"near" and "within" of a brake go together; give both'),
+        ([LAND, driven(brake={"near": "land", "within": 3.0})], "brake.near: 'land' is no other object that moves"),
+        ([LAND, driven(brake={"near": "car", "within": 3.0})], "brake.near: 'car' is no other object that moves"),
+        ([LAND, driven(kind="drive", route=[], brake={"time": 1.0})], 'a brake is of the kind "driver"; this is of'),
+        ([LAND, driven(route=[{"radius": 5.0, "angle_deg": 0.0}])], "angle_deg is 0; an arc turns, by 3600 deg at mos"),
         ([LAND, driven(steer_deg=5.0)], 'steer_deg is of the kind "drive"; this is of \'driver\''),
         ([{**driven(), "role": "rigid_body", "construction": {"kind": "proxy", "primitive": "box", "size": [1, 1, 1]},
            "material": {"name": "tin", "density": 900}}], "car: a driver is of a vehicle"),
@@ -247,6 +253,51 @@ def test_a_driver_has_the_time_that_its_way_takes() -> None:
     with pytest.raises(LayoutError, match=r"duration: 3 s: car takes 6\.\d+ s along its route at 5 m/s; give it 8"):
         set_down(Plan.model_validate(data))
     assert set_down(Plan.model_validate({**data, "simulation": {"duration": 8.0}}))
+
+
+def test_a_driver_that_brakes_has_the_time_that_its_stop_takes() -> None:
+    """From 5 m/s, 10 m on: 10 / 5 s, and v / (mu g) = 5 / (0.9 g) s; before the place, at its time."""
+
+    def takes(**brake: object) -> None:
+        car = {**driven(brake=brake), "velocity": [5.0, 0.0, 0.0]}
+        data = {"title": "", "prompt": "", "objects": [car], "simulation": {"duration": 0.1}}
+        set_down(Plan.model_validate(data))
+
+    stop = 5.0 / (0.9 * 9.81)
+    for brake, begins in (({"at": [0.0, 0.0]}, 2.0), ({"at": [0.0, 0.0], "time": 1.0}, 1.0), ({"time": 3.0}, 3.0)):
+        with pytest.raises(LayoutError, match=rf"car takes {begins + stop:.3g} s along its"):
+            takes(**brake)
+    with pytest.raises(LayoutError, match=r"brake\.at = \(0\.0, 3\.0\) is 3 m beside the path"):
+        takes(at=[0.0, 3.0])
+
+
+def test_an_arc_is_no_tighter_than_the_vehicle_turns_and_stays_on_terrain() -> None:
+    """L / tan(32 deg) = 4.16 m of the rear axle are hypot(4.16, 1.3) = 4.36 m of the car."""
+    set_down(a_plan(driven(route=[{"radius": 4.4, "angle_deg": 90.0}])))
+    with pytest.raises(LayoutError, match=r"car is to drive round an arc of 4\.3 m; .* it goes round 4\.36 m"):
+        set_down(a_plan(driven(route=[{"radius": 4.3, "angle_deg": 90.0}])))
+    with pytest.raises(LayoutError, match=r"car is driven to \(.*\) m, where land is not; move its route"):
+        set_down(a_plan(LAND, driven(route=[{"radius": 12.0, "angle_deg": 180.0}])))
+
+
+def test_formulas_may_name_wheels() -> None:
+    def objective(name: str) -> dict:
+        formula = {"op": "touches", "object": name, "ref": "ground"}
+        ground = {
+            "name": "ground",
+            "role": "terrain",
+            "state": "static",
+            "construction": {"kind": "proxy", "primitive": "ground"},
+            "material": {"name": "a", "density": 1},
+        }
+        asked = {"kind": "formula", "object": "car", "formula": formula}
+        return {"title": "", "prompt": "", "objects": [driven(), ground], "objectives": [asked]}
+
+    assert Plan.model_validate(objective("car_wheel_rear_left")).objectives
+    with pytest.raises(
+        ValueError, match=r"no object 'car_wheel'; the plan has car, ground, and the wheels car_wheel_fr"
+    ):
+        Plan.model_validate(objective("car_wheel"))
 
 
 def test_a_driver_that_the_scene_refuses_is_refused_in_its_words() -> None:

@@ -1,5 +1,6 @@
 """The plan's model: a pydantic schema in which nothing dangles."""
 
+from wsim.plan.schema.actuation import ArcPlan, BrakePlan
 from wsim.plan.schema.base import Name, Vec3
 from wsim.plan.schema.constructions import (
     AreaPlan,
@@ -48,9 +49,11 @@ __all__ = [
     "PREDICATES",
     "TEMPLATES",
     "Actuation",
+    "ArcPlan",
     "AreaPlan",
     "Assumption",
     "AssumptionKind",
+    "BrakePlan",
     "CameraPlan",
     "Clearance",
     "Contact",

@@ -7,13 +7,46 @@ from typing import Any, Literal
 
 from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
-from wsim.plan.schema.base import Name, NotNegative, Number, Positive, Strict, Text, Vec3, Word
+from wsim.plan.schema.base import Name, NotNegative, Number, Positive, Share, Strict, Text, Vec3, Word
 
 WayPoint = tuple[Number, Number] | tuple[Number, Number, Number]  # x, y [m], and the heading there [deg] if it matters
+MOST_TURN = 3600.0  # [deg] of one arc
 _REACHES = ("reach", "follow", "schedule")  # kinds that say where a robot is by time
 _OF_SOME = (  # kinds of actuation
-    "policy", "route", "speed", "steer_deg", "waits", "link", "point", "path", "times", "rotation_deg", "start",
+    "policy", "route", "speed", "steer_deg", "waits", "brake", "link", "point", "path", "times", "rotation_deg",
+    "start",
 )  # fmt: skip
+
+
+class ArcPlan(Strict):
+    """A leg of a driver's route: part of a circle, which begins as what is before it ends."""
+
+    radius: Positive  # [m]
+    angle_deg: Number  # that it turns, to the left
+
+    @model_validator(mode="after")
+    def _turns(self) -> ArcPlan:
+        if not 0.0 < abs(self.angle_deg) <= MOST_TURN:
+            raise ValueError(f"angle_deg is {self.angle_deg:g}; an arc turns, by {MOST_TURN:g} deg at most")
+        return self
+
+
+class BrakePlan(Strict):
+    """When a driver presses all brakes, for good: at the first of these that comes."""
+
+    at: tuple[Number, Number] | None = None  # a place on its way [m]
+    time: NotNegative | None = None  # [s]
+    near: Name | None = None  # what moves, as its origin comes
+    within: Positive | None = None  # so near to the vehicle's [m]
+    share: Share = 1.0  # of the brakes' torque
+
+    @model_validator(mode="after")
+    def _says_when(self) -> BrakePlan:
+        if self.at is None and self.time is None and self.near is None:
+            raise ValueError('a brake says when: "at" a place, at a "time", or "near" a body, "within" so much')
+        if (self.near is None) != (self.within is None):
+            raise ValueError('"near" and "within" of a brake go together; give both')
+        return self
 
 
 class Actuation(Strict):
@@ -28,10 +61,12 @@ class Actuation(Strict):
     )  # of the kind's unit: rad or m, per second, N, N m; a path's points; a schedule's [deg] or [m]
     words: Text = ""
     policy: Word | None = None  # of the kind "policy": the id of the network that walks the robot
-    route: tuple[WayPoint, ...] = Field((), max_length=1000)  # of a policy or a driver, one point after the other
+    # Of a policy or a driver, one after the other. A driver with an arc goes straight from one point to the next.
+    route: tuple[WayPoint | ArcPlan, ...] = Field((), max_length=1000)
     speed: Positive | None = None  # along the route, or of what is driven straight on [m/s]
     steer_deg: Number | None = None  # of the kind "drive": of the front wheels, to the left
     waits: tuple[NotNegative, ...] = Field((), max_length=1000)  # of a driver: at each point of the route, in turn [s]
+    brake: BrakePlan | None = None  # of a driver
 
     link: Name | None = None  # of a robot, of the kinds "reach" and "follow"
     point: Vec3 | None = None  # of the link, in its own frame [m]
@@ -71,6 +106,8 @@ class Actuation(Strict):
             raise ValueError(f'steer_deg is of the kind "drive"; this is of {self.kind!r}')
         if self.waits and self.kind != "driver":
             raise ValueError(f'waits are of the kind "driver"; this is of {self.kind!r}')
+        if self.brake and self.kind != "driver":
+            raise ValueError(f'a brake is of the kind "driver"; this is of {self.kind!r}')
         if len(self.waits) > len(self.route):
             raise ValueError(f"waits has {len(self.waits)} times for the route's {len(self.route)} points")
         if self.kind not in ("driver", "drive"):
@@ -79,7 +116,7 @@ class Actuation(Strict):
             raise ValueError(f'a {self.kind} is a vehicle\'s, with its "speed"; it takes no joint, target or policy')
         if self.kind == "driver" and not self.route:
             raise ValueError('a driver follows a "route" from where the vehicle starts; it has none')
-        if self.kind == "driver" and any(len(point) > 2 for point in self.route):
+        if self.kind == "driver" and any(isinstance(leg, tuple) and len(leg) > 2 for leg in self.route):
             raise ValueError("a driver passes a route's points as its way goes; leave their headings out")
         if self.kind == "drive" and self.route:
             raise ValueError('what is driven straight on, or in a circle, has no route; a "driver" follows one')
@@ -91,6 +128,8 @@ class Actuation(Strict):
             return self
         if self.kind != "policy" and (self.policy or self.route or self.speed):
             raise ValueError(f'policy, route and speed are of the kind "policy"; this is of {self.kind!r}')
+        if any(isinstance(leg, ArcPlan) for leg in self.route):
+            raise ValueError("a policy walks from point to point; an arc is of a vehicle's driver")
         if (self.route or self.speed) and not self.policy:
             raise ValueError("route and speed are walked by a policy; name it, or leave them out")
         if self.speed and not self.route:

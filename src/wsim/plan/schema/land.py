@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from wsim.limits import MAX_DRIVE_SPEED, MAX_POSITION
+from wsim.plan.schema.actuation import ArcPlan
 from wsim.plan.schema.constructions import FromScatter, FromTerrain, FromVehicle
 
 if TYPE_CHECKING:
@@ -34,7 +35,20 @@ def land_problems(plan: Draft) -> Iterator[str]:
                         f'{where}.kind: {actuation.kind!r}: {item.name} is a vehicle, which a "driver" or a "drive" '
                         "moves; take one of these, or leave it out"
                     )
+                near = actuation.brake.near if actuation.brake is not None else None
+                if near is not None and not any(
+                    one.name == near and _moves(one) for one in plan.objects if one is not item
+                ):
+                    yield (
+                        f"{where}.brake.near: {near!r} is no other object that moves; name one, or give the place as "
+                        '"at"'
+                    )
                 yield from _driven(where, item.built, actuation, terrain)
+
+
+def _moves(item: PlanObject) -> bool:
+    """Whether it is one body, whose place a program is told."""
+    return item.state in ("dynamic", "kinematic") and item.primitive not in ("robot", "terrain", "scatter")
 
 
 def _scattered(plan: Draft) -> Iterator[str]:
@@ -103,7 +117,10 @@ def _driven(where: str, vehicle: FromVehicle, actuation: Actuation, terrain: Pla
                 f"{where}.steer_deg: {actuation.steer_deg:g} deg: a {vehicle.vehicle} turns its wheels by {most:g} deg "
                 "at most; steer less"
             )
-    for k, (x, y, *_) in enumerate(actuation.route):
+    for k, leg in enumerate(actuation.route):
+        if isinstance(leg, ArcPlan):
+            continue  # where that leads the layout knows
+        x, y, *_ = leg
         if max(abs(x), abs(y)) > MAX_POSITION:
             yield f"{where}.route.{k}: ({x:g}, {y:g}) m must be within {MAX_POSITION:g} m; move it"
         elif terrain is not None and isinstance(terrain.built, FromTerrain):

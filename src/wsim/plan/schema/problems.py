@@ -240,8 +240,15 @@ def _goes(item: PlanObject) -> bool:
     return item.state != "static" and item.primitive not in ("fluid", "ground", "terrain", "scatter")
 
 
+def _wheels(plan: Draft) -> str:
+    """What else a formula may name: the wheels of vehicles."""
+    wheels = [prim for item in plan.objects if item.primitive == "vehicle" for prim in item.prims if "_wheel_" in prim]
+    return f", and the wheels {', '.join(wheels)}" if wheels else ""
+
+
 def _others(plan: Draft) -> Iterator[str]:
     names = {item.name for item in plan.objects}
+    parts = {prim for item in plan.objects if item.primitive == "vehicle" for prim in item.prims}
     cameras = {camera.name for camera in plan.cameras}
     for i, objective in enumerate(plan.objectives):
         if objective.object not in names:
@@ -251,8 +258,8 @@ def _others(plan: Draft) -> Iterator[str]:
         if objective.ref is not None and objective.ref not in names:
             yield f"objectives.{i}.ref: no object {objective.ref!r}; the plan has {_known(plan)}"
         for name in sorted(objective.formula.names()) if objective.formula is not None else ():
-            if not name.startswith("/") and name not in names:
-                yield f"objectives.{i}.formula: no object {name!r}; the plan has {_known(plan)}"
+            if not name.startswith("/") and name not in names | parts:
+                yield f"objectives.{i}.formula: no object {name!r}; the plan has {_known(plan)}{_wheels(plan)}"
     for i, camera in enumerate(plan.cameras):
         if camera.of is not None and camera.of not in names:
             yield f"cameras.{i}.of: no object {camera.of!r}; the plan has {_known(plan)}"

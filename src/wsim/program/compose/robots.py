@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 from wsim.errors import UserError
-from wsim.plan.schema import Actuation, FromRobot, PlanObject
+from wsim.plan.schema import Actuation, ArcPlan, FromRobot, PlanObject
 from wsim.program.compose.draft import Draft
 from wsim.program.compose.poses import position
 from wsim.program.source import call, number, tuple_of
@@ -91,7 +91,11 @@ def policies(draft: Draft) -> list[str]:
             given = [f'"{item.name}_walk"', draft.handles[item.name], json.dumps(each.policy)]
             if each.route:
                 route = draft.variable(f"{item.name}_route")
-                lines += [f"    {route} = (", *(f"        {tuple_of(point)}," for point in each.route), "    )"]
+                lines += [
+                    f"    {route} = (",
+                    *(f"        {tuple_of(leg)}," for leg in each.route if not isinstance(leg, ArcPlan)),
+                    "    )",
+                ]
                 given.append(f"route={route}")
             if each.speed:
                 given.append(f"speed={number(each.speed)}")

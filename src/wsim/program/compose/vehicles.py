@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from wsim.plan.layout.drives import stops, way_of
+from wsim.plan.layout.drives import has_arcs, heading_deg, stops, way_of
 from wsim.plan.layout.land import survey, terrain_of
-from wsim.plan.schema import Actuation, FromVehicle, PlanObject
+from wsim.plan.schema import Actuation, ArcPlan, BrakePlan, FromVehicle, PlanObject
 from wsim.program.compose.draft import Draft
 from wsim.program.compose.poses import position
 from wsim.program.source import call, number, tuple_of
@@ -59,16 +59,42 @@ def drivers(draft: Draft) -> list[str]:
         each = driven(item)
         if each is None or each.kind != "driver" or not isinstance(item.built, FromVehicle):
             continue
-        draft.imports |= {"Driver", "Road"}
+        draft.imports |= {"Driver", "Legs" if has_arcs(each) else "Road"}
         name = draft.variable(f"{item.name}_driver").upper()
         draft.drivers.append(name)
-        path = f"Road({draft.way(tuple(way_of(item, each)))}).line()"
+        path = _path(draft, item, each)
         given = [f'"{item.name}"', f'"{item.built.vehicle}"', f"path={path}", f"speed={number(each.speed or 0.0)}"]
         given += [f"start_speed={number(item.speed_ahead)}"] if item.speed_ahead > LEVEL else []
-        waits = [tuple_of(stop) for stop in stops(each.route, each.waits)]
+        waits = [tuple_of(stop) for stop in stops(item, each)]
         given += [f"waits=[{', '.join(waits)}]"] if waits else []
+        if each.brake is not None:
+            draft.imports.add("Brake")
+            given.append(f"brake=Brake({_brake(each.brake)})")
         lines += call(f"{name} = Driver", given, depth=0)
     return lines
+
+
+def _path(draft: Draft, item: PlanObject, each: Actuation) -> str:
+    """A smooth line through the route's points, or its straight legs and arcs."""
+    way = way_of(item, each)
+    if not has_arcs(each):
+        return f"Road({draft.way(tuple(way))}).line()"
+    draft.imports.add("Arc")
+    legs = [
+        f"Arc({number(leg.radius)}, {number(leg.angle_deg)})" if isinstance(leg, ArcPlan) else tuple_of(leg[:2])
+        for leg in each.route
+    ]
+    return f"Legs({tuple_of(way[0])}, {number(heading_deg(item))}, [{', '.join(legs)}]).line()"
+
+
+def _brake(brake: BrakePlan) -> str:
+    """Its arguments."""
+    given = [f"at={tuple_of(brake.at)}"] if brake.at is not None else []
+    given += [f"time={number(brake.time)}"] if brake.time is not None else []
+    if brake.near is not None and brake.within is not None:
+        given += [f'near="{brake.near}"', f"within={number(brake.within)}"]
+    given += [f"share={number(brake.share)}"] if brake.share < 1.0 else []
+    return ", ".join(given)
 
 
 def control(draft: Draft) -> list[str]:
