@@ -118,7 +118,9 @@ def arms(scene: Scene, draw: Draw, place: Place) -> None:
         middle = tuple(0.5 * (a + b) for a, b in zip(point, end, strict=True))
         yaw = math.degrees(math.atan2(heading[1], heading[0]))
         pitch = -math.degrees(math.asin(heading[2] / norm))
-        name, mass = f"{place.name}_{k}", draw.density(place.size) * 0.02 * place.size**3
+        # No denser than osmium: its length was drawn by itself.
+        name, densest = f"{place.name}_{k}", 22_000.0 * 0.015 * long**3
+        mass = min(draw.density(place.size) * 0.02 * place.size**3, densest)
         scene.box(name, size=(long, 0.15 * long, 0.1 * long), position=middle, rotation_deg=(0, pitch, yaw), mass=mass)
         beyond = (count - k) * place.size
         load = mass * (count - k)
@@ -204,10 +206,12 @@ def ropes(scene: Scene, draw: Draw, place: Place) -> None:
         # The heavier comes to the floor before the lighter comes to its post.
         scene.box(f"{name}_floor", size=(20 * s, 10 * s, s), position=place.at(0, -5.5), static=True)
         light, heavy = sorted(draw.density(s) for _ in "xx")
+        free = -math.inf  # from where on the other leaves room
         for side, x, density, low in (("left", -0.6, light, draw.between(4.0, 4.5)),
                                       ("right", 0.6 + apart, heavy, draw.between(3.0, 4.0))):  # fmt: skip
-            lean = draw.pick((0.0, draw.between(-1.0, 1.0)))
-            scene.sphere(f"{name}_{side}", radius=0.3 * s, position=place.at(x + lean, -low), density=density)
+            x = max(x + draw.pick((0.0, draw.between(-1.0, 1.0))), free)
+            scene.sphere(f"{name}_{side}", radius=0.3 * s, position=place.at(x, -low), density=density)
+            free = x + 0.7
         scene.rope(f"{name}_rope", f"{name}_left", f"{name}_right", around=[f"{name}_post_{k}" for k in range(posts)])
         return
     above: str | None = None
@@ -232,7 +236,8 @@ def cables(scene: Scene, draw: Draw, place: Place) -> None:
     x, y, z = draw.direction()
     span = draw.between(2.0, 5.0) * s
     end = tuple(p + span * d for p, d in zip(place.at(0, 0), (x, y, -0.3 * abs(z)), strict=True))
-    options = {"radius": 0.03 * s, "links": draw.whole(5, 12), "mass_per_length": draw.density(s) * 0.003 * s**2}
+    links, slender = draw.whole(5, 12), int(math.dist(place.at(0, 0), end) / (4.0 * 0.03 * s) * (1.0 - 1e-6))
+    options = {"radius": 0.03 * s, "links": min(links, slender), "mass_per_length": draw.density(s) * 0.003 * s**2}
     if draw.pick((True, False)):
         beyond = tuple(e + 0.33 * s * (e - a) / span for e, a in zip(end, place.at(0, 0), strict=True))
         scene.sphere(f"{name}_weight", radius=0.3 * s, position=beyond, density=draw.density(s))

@@ -1,6 +1,7 @@
 """Worlds that were drawn as sound ones, and rejected once for what is lost in rounding: they are accepted."""
 
 import dataclasses
+import math
 
 import numpy as np
 import pytest
@@ -112,3 +113,32 @@ def test_a_rope_that_hangs_slack_at_the_start_comes_taut_in_the_first_interval()
     cords[20, 0, :3] += 0.1 * np.linalg.norm(cords[20, 0, :3]) * aside / np.linalg.norm(aside)
     bent = dataclasses.replace(recording, ties=dataclasses.replace(recording.ties, cords=cords))
     assert any("pulls beside its way" in message for message in fails(CheckRecordedTies(), bent))
+
+
+def test_a_stop_that_catches_what_a_drive_throws_within_a_frame():
+    """It turned by 0.16 rad between two frames at rest. And a slider's drive is as damped as it went, where dry
+    friction comes to hold another joint of its arm.
+
+    A tenth of what the slider passes on is found, and of the hinge's torque about its anchor, once it lies still.
+    """
+    recording, _ = recorded("arms", 30)
+    assert fails(CheckRecordedTies(), recording) == []
+    names = [joint.prim.split("/")[-1] for joint in recording.world.joints]
+    for name, column, frame in (("arms0_2_slider", 12, 6), ("arms2_1_hinge", 12, 20)):
+        joints = recording.ties.joints.copy()
+        joints[frame, names.index(name), column] *= 0.9
+        wrong = dataclasses.replace(recording, ties=dataclasses.replace(recording.ties, joints=joints))
+        assert any(name in message for message in fails(CheckRecordedTies(), wrong))
+
+
+@pytest.mark.parametrize(("kind", "seed"), [("cables", 29), ("cables", 35), ("arms", 20), ("ropes", 22)])
+def test_what_is_drawn_is_a_world(kind, seed):
+    """Cables are slender, links no denser than osmium, and weights are not in each other."""
+    stage, _ = stage_of(kind, seed)
+    world = world_of(stage)
+    for body in world.bodies:
+        assert body.mass < 22_600.0 * body.volume
+    balls = [body for body in world.bodies if body.shapes[0].kind == "sphere"]
+    for k, one in enumerate(balls):
+        for other in balls[:k]:
+            assert math.dist(one.position, other.position) > one.shapes[0].size[0] + other.shapes[0].size[0]

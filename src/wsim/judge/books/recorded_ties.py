@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 WORLD = -1
 OWN = ("revolute", "prismatic")  # kinds with one motion of their own
 EVEN = 0.05  # of its way, that something misses which goes on evenly
+EASED = 1e-3  # of dry friction: what gives less holds, or slips for a part of the interval
 
 
 @dataclass(frozen=True)
@@ -111,9 +112,16 @@ class RecordedTies:
 
     @cached_property
     def _turning(self) -> Floats:
-        """The faster rate at which each body turns at both ends of an interval, (T - 1, B) [rad/s]."""
-        rate = np.linalg.norm(self._evidence.motion.w, axis=2)
-        found: Floats = np.maximum(rate[1:], rate[:-1])
+        """The faster rate at which each body turns at both ends of an interval, (T - 1, B) [rad/s].
+
+        Or that by which it turned meanwhile: what a stop catches may show no rate before or after.
+        """
+        motion = self._evidence.motion
+        rate, turn = np.linalg.norm(motion.w, axis=2), motion.q[..., 3:]
+        # By half-angles' sines: the cosine of a small one is lost in rounding.
+        apart = np.minimum(*(np.linalg.norm(turn[1:] + sign * turn[:-1], axis=2) for sign in (-1.0, 1.0)))
+        turned = 4.0 * np.arcsin(np.minimum(0.5 * apart, 1.0))
+        found: Floats = np.maximum(np.maximum(rate[1:], rate[:-1]), turned / motion.h[:, None])
         return found
 
     @cached_property
@@ -235,7 +243,7 @@ class RecordedTies:
             # What another drive shakes faster than frames tell is damped by how far it went, too.
             stray = jolts.strayed(at.position, rate, self.intervals)
             shaken = drive.damping * stray / self.intervals > unsure
-            hit = self.struck[:, self.pairs[k][1]] | shaken
+            hit = self._stuck[:, self.pairs[k][1]] | shaken
             may = found[1] + drive.stiffness * np.where(shaken, stray, 0.0)
             mean, unsure = (np.where(hit, *pair) for pair in ((found[0], mean), (may, unsure)))
             known &= found[2] | ~hit
@@ -263,6 +271,13 @@ class RecordedTies:
         """Where the speeds of each body's mechanism may jump, (T - 1, B)."""
         stops = [(pair, self.track.stop[1:, k] != 0.0) for k, pair in enumerate(self.pairs)]
         return jolts.struck(self._evidence, [*stops, *((pull.rows, pull.jerks) for pull in self.ropes.pulls)])
+
+    @cached_property
+    def _stuck(self) -> Bools:
+        """Likewise, or change evenly no more, as dry friction in it comes to hold a joint or lets it go, (T - 1, B)."""
+        holds = [np.abs(self.track.friction[1:, k]) < (1.0 - EASED) * joint.friction * self.intervals
+                 for k, joint in enumerate(self.joints)]  # fmt: skip
+        return self.struck | jolts.struck(self._evidence, list(zip(self.pairs, holds, strict=True)))
 
     def rubs(self, k: int) -> tuple[Floats, Bools, Floats]:
         """Joint k's direction of motion, (T - 1,), where it has it all through an interval, and the most of it for
