@@ -9,6 +9,7 @@ Who imports the package (`from wsim import sim`) pays nothing; `sim.Simulation` 
 from __future__ import annotations
 
 import gc
+import os
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -24,10 +25,12 @@ def keep_what_loads() -> None:
     """Say that this process is wsim's own: what is loaded from here on stays, and no search for garbage looks at it.
 
     Each full one would go through all that Newton made, for the better part of a second, and a run has several. Who
-    uses wsim as a library decides that alone: with what is loaded, all that is there at the time is kept.
+    uses wsim as a library decides that alone: with what is loaded, all that is there at the time is kept. Nor does such
+    a process draw with MuJoCo, whose windows take a third of its loading: it is told to leave them out.
     """
     global _lasts
     _lasts = True
+    os.environ.setdefault("MUJOCO_GL", "disable")
 
 
 @contextmanager
@@ -59,12 +62,17 @@ def load_beside(name: str) -> None:
 
     What both load at a time must not import one another.
     """
+    do_beside(lambda: load_module(name), f"loads {name}")
 
-    def load() -> None:
+
+def do_beside(call: Callable[[], object], name: str) -> None:
+    """Do in a thread what only takes time, while this one goes on; if it fails, who needs it will see why."""
+
+    def do() -> None:
         with suppress(Exception):
-            load_module(name)
+            call()
 
-    Thread(target=load, name=f"loads {name}", daemon=True).start()
+    Thread(target=do, name=name, daemon=True).start()
 
 
 def door(package: str, homes: Mapping[str, str]) -> Callable[[str], Any]:

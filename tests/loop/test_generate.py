@@ -7,7 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from wsim.loop import start as starting
 from wsim.loop.generate import generate
+from wsim.loop.options import Options
+from wsim.progress import silent
 from wsim.rules.planner import NotUnderstood
 
 
@@ -27,3 +30,14 @@ def test_a_prompt_that_is_not_understood_leaves_nothing(tmp_path: Path) -> None:
         generate("A purple giraffe sings.", tmp_path / "runs")
     assert caught.value.words == ["giraffe", "sings"]
     assert not (tmp_path / "runs").exists()
+
+
+def test_the_report_is_made_ready_once_while_a_world_is_simulated(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    done = []
+    monkeypatch.setattr(starting, "do_beside", lambda call, name: done.append(name))
+    _, crew = starting.start("a ball", tmp_path, None, Options(), silent)
+    for stage in ("building the stage", "simulating", "simulating", "judging", "simulating"):
+        crew.workspace.progress(stage, 0, 1)
+    assert done == ["makes the report ready"]

@@ -4,15 +4,18 @@ import importlib.util
 import re
 from pathlib import Path
 
+import jinja2
 import numpy as np
 import pytest
 
 from tests.crashing import CRASH
+from wsim import recording
 from wsim.errors import UserError
 from wsim.judge.verdict import Finding, RepairTarget, Verdict
-from wsim.recording import Frame, RecordingWriter
-from wsim.report import write
+from wsim.recording import Frame, RecordingWriter, kept
+from wsim.report import make_ready, templates, write
 from wsim.runs.folder import RunFolder
+from wsim.runs.iteration import judge_recording
 from wsim.scene.world import Body, Shape, World
 
 _spec = importlib.util.spec_from_file_location("report_probe", Path(__file__).parent / "probe.py")
@@ -232,3 +235,21 @@ def test_hostile_text_does_not_run(make_run, tmp_path: Path) -> None:
     shown = browser.probe(write(make_run(verdict, program=f"# {HOSTILE}\n", prompt=HOSTILE)), tmp_path / "profile")
     assert shown["title"].startswith("Rejected: ") and shown["broken"] == 0
     assert shown["page"].count(HOSTILE) == 5  # heading, card, its line of code, table, program
+
+
+def test_a_page_that_was_made_ready_compiles_nothing(accepted: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And is the same."""
+    before = write(accepted).read_bytes()
+    templates._environment.cache_clear()
+    make_ready()
+    monkeypatch.setattr(jinja2.Environment, "compile", lambda *_, **__: pytest.fail("a template is compiled"))
+    assert write(accepted).read_bytes() == before
+
+
+def test_a_recording_that_was_judged_is_reported_unread(accepted: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And what is shown of it is what its file holds."""
+    before = write(accepted).read_bytes()
+    with recording.keeping():
+        judge_recording(next(accepted.glob("iterations/*/recording.rrd")), None)
+        monkeypatch.setattr(kept, "read", lambda path: pytest.fail(f"{path} is read"))
+        assert write(accepted).read_bytes() == before

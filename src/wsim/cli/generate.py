@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from wsim import loop
+from wsim import loop, recording
 from wsim.agents.budget import Budget
 from wsim.agents.models import BUILTIN, choose
 from wsim.cli.approve import approved, with_answers
@@ -147,7 +147,8 @@ def _generate(prompt: str, options: Options, runs: Path, path: Path | None, answ
         generate_world = loop.generate_world
         load_beside("wsim.sim.simulation")  # while the stage is built in its sandbox
         options.start_up += time.perf_counter() - began
-        done = generate_world(said, runs, options, approve, chosen, progress)
+        with recording.keeping():
+            done = generate_world(said, runs, options, approve, chosen, progress)
     if done.verdict is None:
         console.print("nothing was built")
         raise typer.Exit(0)

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from wsim import report
+from wsim import recording, report
 from wsim import runs as passes
 from wsim.cli.options import EXIT_CODES, Device, Isolation, Pictures, Runs, Set, TimeStep, Verify, parse_params
 from wsim.cli.show import ConsoleProgress, show_verdict
@@ -66,9 +66,11 @@ def run(
     folder.record(prompt=chosen.prompt if chosen else None, program=str(program), params=settings.params)
     if chosen:
         write_whole(folder.path / "plan.json", chosen.model_dump_json(indent=2) + "\n")
-    with ConsoleProgress() as progress:
-        verdict = passes.run_in_folder(folder, program, chosen, settings, progress)
-    show_verdict(verdict, folder.path, report.write(folder.path))
+    with recording.keeping():
+        with ConsoleProgress() as progress:
+            verdict = passes.run_in_folder(folder, program, chosen, settings, progress)
+        written = report.write(folder.path)
+    show_verdict(verdict, folder.path, written)
     raise typer.Exit(EXIT_CODES[verdict.status])
 
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import asdict
 from pathlib import Path
 
+from wsim import report
 from wsim.agents.ask import Desk
 from wsim.agents.budget import Ledger
 from wsim.agents.crew import Crew
 from wsim.agents.pictures import small_jpeg
 from wsim.agents.transcript import Transcript
+from wsim.door import do_beside
 from wsim.loop.options import Options
 from wsim.plan.drawing.picture import draw_picture
 from wsim.plan.schema import Plan
@@ -32,8 +34,13 @@ def start(prompt: str, runs: Path, plan: Plan | None, options: Options, progress
     run = RunFolder.create(runs, plan.title if plan else prompt)
     ledger = Ledger(options.budget)
 
+    ready: list[str] = []
+
     def watched(stage: str, done: float, total: float) -> None:
         ledger.check_time()  # a simulation that outlasts the run's time ends here
+        if stage == "simulating" and not ready:  # which leaves Python idle
+            ready.append(stage)
+            do_beside(lambda: report.make_ready(), "makes the report ready")
         progress(stage, done, total)
 
     crew = Crew(

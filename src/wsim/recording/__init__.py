@@ -9,6 +9,7 @@ from wsim.door import door
 if TYPE_CHECKING:
     from wsim.recording.display import has_display
     from wsim.recording.frames import FluidFrame, Frame, LogLine
+    from wsim.recording.kept import keeping, read_and_keep, read_kept
     from wsim.recording.reader import read, read_world
     from wsim.recording.recording import FluidTrack, ImageTrack, Recording
     from wsim.recording.view import open_native, serve_web
@@ -23,8 +24,11 @@ __all__ = [
     "Recording",
     "RecordingWriter",
     "has_display",
+    "keeping",
     "open_native",
     "read",
+    "read_and_keep",
+    "read_kept",
     "read_world",
     "serve_web",
 ]
@@ -40,6 +44,9 @@ __getattr__ = door(
         "Recording": "recording",
         "has_display": "display",
         "open_native": "view",
+        "keeping": "kept",
+        "read_and_keep": "kept",
+        "read_kept": "kept",
         "read": "reader",
         "read_world": "reader",
         "serve_web": "view",

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from wsim.door import door
 
 if TYPE_CHECKING:
-    from wsim.report.page import write
+    from wsim.report.page import make_ready, write
 
-__all__ = ["write"]
+__all__ = ["make_ready", "write"]
 
-__getattr__ = door(__name__, {"write": "page"})
+__getattr__ = door(__name__, {"make_ready": "page", "write": "page"})

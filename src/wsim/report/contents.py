@@ -175,7 +175,7 @@ def _plan(path: Path) -> Plan:
 
 
 def _recording(path: Path) -> Recording:
-    return recording.read(path)
+    return recording.read_kept(path)
 
 
 def _section(checks: dict[str, Any], name: str) -> dict[str, Any]:

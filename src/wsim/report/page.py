@@ -30,6 +30,7 @@ from wsim.report.templates import source, template
 from wsim.runs.folder import write_whole
 
 STATUS_WORDS = {"accepted": "Accepted", "rejected": "Rejected", "blocked": "Blocked"}
+PARTS = ("macros.html", "acceptance.html", "iterations.html", "models.html", "review.html")  # of template.html
 MOST_CARDS = 8
 
 
@@ -73,6 +74,13 @@ def write(run_dir: str | Path, most_video_bytes: int = MOST_VIDEO_BYTES) -> Path
     # A lone surrogate in some program's message has no bytes.
     write_whole(path, html.encode("utf-8", "replace").decode("utf-8"))
     return path
+
+
+def make_ready() -> None:
+    """Do what a first page takes beside its run: its templates, and the patterns by which a program is coloured."""
+    for name in ("template.html", *PARTS):
+        template(name)
+    source_lines("", {})
 
 
 def render(values: dict[str, Any]) -> str:

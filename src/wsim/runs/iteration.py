@@ -199,7 +199,7 @@ class Iteration:
 def judge_recording(path: Path, plan: Plan | None, progress: Progress = silent, model: Path | None = None) -> Verdict:
     """Read a recording back and judge it; a trajectory.npz is one of someone else's, of what `model` describes."""
     progress("judging", 0, 2)
-    evidence = importers.read_npz(path, model) if path.suffix == ".npz" else recording.read(path)
+    evidence = importers.read_npz(path, model) if path.suffix == ".npz" else recording.read_and_keep(path)
     progress("judging", 1, 2)
     verdict = judge(evidence, plan)
     progress("judging", 2, 2)

@@ -27,7 +27,7 @@ class Trajectory:
     @classmethod
     def of(cls, path: Path) -> Trajectory:
         """A recording's."""
-        found = recording.read(path)
+        found = recording.read_kept(path)
         ends = {prim: np.asarray(track.position[-1]) for prim, track in found.fluids.items() if len(track.time)}
         return cls(np.asarray(found.time), np.asarray(found.body_q), ends)
 

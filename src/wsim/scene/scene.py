@@ -6,13 +6,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from pxr import Gf, Sdf, UsdGeom, UsdPhysics
+from pxr import Gf, Sdf, UsdPhysics
 
 from wsim.defaults import DURATION, FRAME_RATE, GRAVITY
 from wsim.limits import MAX_DURATION, MAX_FRAME_RATE, MAX_TIME_STEP, bad_time_step
 from wsim.scene import schema
 from wsim.scene.articulation import joints_of, mark_articulations
-from wsim.scene.authoring import PARAMETERS, PHYSICS_SCENE, note_line
+from wsim.scene.authoring import PARAMETERS, PHYSICS_SCENE, calling_line, note_line
 from wsim.scene.cables import Cables
 from wsim.scene.check_joints import joint_problems
 from wsim.scene.contacts import Contacts
@@ -22,6 +22,7 @@ from wsim.scene.policies import Policies
 from wsim.scene.robots import Robots
 from wsim.scene.scattered import Scattered
 from wsim.scene.sensors import Sensors
+from wsim.scene.specs import define
 from wsim.scene.validate import Call, shown, suggestion
 from wsim.scene.vehicles import Vehicles
 from wsim.scene.views import Views
@@ -96,10 +97,6 @@ class Scene(Scattered, Cables, Vehicles, Contacts, Motions, Views, Robots, Polic
         if not isinstance(unit, str):
             call.fail(f'unit = {shown(unit)} must be words such as "kg/m^3"')
         value = self._overrides.get(name, standard)
-        if not self._stage.GetPrimAtPath(PARAMETERS):
-            UsdGeom.Scope.Define(self._stage, PARAMETERS)
-        prim = UsdGeom.Scope.Define(self._stage, path).GetPrim()
-        note_line(prim)
         double = Sdf.ValueTypeNames.Double
         values: dict[str, tuple[Sdf.ValueTypeName, object]] = {
             "value": (double, value),
@@ -107,7 +104,12 @@ class Scene(Scattered, Cables, Vehicles, Contacts, Motions, Views, Robots, Polic
             "unit": (Sdf.ValueTypeNames.String, unit),
         }
         values |= {key: (double, bound) for key, bound in (("low", least), ("high", most)) if bound is not None}
-        schema.apply(prim, schema.PARAMETER, values)
+        layer = self._stage.GetEditTarget().GetLayer()
+        with Sdf.ChangeBlock():
+            define(layer, PARAMETERS, "Scope")
+            made = define(layer, path, "Scope")
+            made.customData = {"wsim": {"line": calling_line()}}
+            schema.state(made, schema.PARAMETER, values)
         self._parameters.append(name)
         return value
 

@@ -7,6 +7,8 @@ from pathlib import Path
 
 from pxr import Plug, Sdf, Usd
 
+from wsim.scene import specs
+
 SCENE = "WsimSceneAPI"
 FLUID = "WsimFluidAPI"
 CONTAINER = "WsimContainerAPI"
@@ -42,9 +44,15 @@ def apply(prim: Usd.Prim, name: str, values: dict[str, tuple[Sdf.ValueTypeName, 
     USD reads its schema plugins once, when the first stage is made; a stage made before `wsim.scene` was imported
     must not change what is written, so neither the application nor the types are left to the registry.
     """
-    prim.AddAppliedSchema(name)
+    with Sdf.ChangeBlock():
+        state(specs.spec_of(prim), name, values)
+
+
+def state(spec: Sdf.PrimSpec, name: str, values: dict[str, tuple[Sdf.ValueTypeName, object]]) -> None:
+    """As `apply`, straight into a layer (`wsim.scene.specs`)."""
+    specs.apply(spec, name)
     for key, (kind, value) in values.items():
-        prim.CreateAttribute(f"wsim:{key}", kind, False, Sdf.VariabilityUniform).Set(value)
+        specs.put(spec, f"wsim:{key}", kind, value, Sdf.VariabilityUniform)
 
 
 def has(prim: Usd.Prim, name: str) -> bool:
