@@ -269,3 +269,32 @@ def test_a_bad_number_of_a_driver_is_named(wrong, says):
     with pytest.raises(SceneError) as caught:
         Driver(**({"vehicle": "truck", "spec": "hmmwv", "path": straight(10.0), "speed": 3.0} | wrong))
     assert says in str(caught.value) and str(caught.value).startswith("Driver(")
+
+
+class WithABall(Bicycle):
+    """A ball 10 m ahead in the first world, and out of the way in the second."""
+
+    def __init__(self, speed):
+        super().__init__(speed)
+        for axle in self.axles.values():
+            axle.position = np.zeros(2)
+
+    def body(self, name):
+        if name == "ball":
+            return SimpleNamespace(position=np.array([[10.0, 0.0, 0.0], [10.0, 50.0, 0.0]]))
+        return super().body(name)
+
+
+def test_it_brakes_for_a_body_that_is_near_in_the_world_where_it_is():
+    """From 4 m/s at 5 m of it: torque alone, 4 T / r and rolling, stops it in v² / (2 a); the other world drives on."""
+    brake = Brake(near="ball", within=5.0, share=0.5)
+    driver = Driver("truck", "hmmwv", path=straight(12.0), speed=4.0, start_speed=4.0, brake=brake)
+    world = WithABall(4.0)
+    for k in range(300):
+        driver.drive(world, 0.01 * k)
+        for _ in range(10):
+            world.step(0.001)
+    slows = 0.5 * 4.0 * SPEC.brake_torque / SPEC.wheel_radius + SPEC.rolling * SPEC.mass * G
+    assert world.place[0, 0] == pytest.approx(5.0 + 4.0**2 / (2.0 * slows / SPEC.effective_mass), abs=0.1)
+    assert abs(world.speed[0]) < 0.02
+    assert world.place[1, 0] == pytest.approx(12.0, abs=0.1) and world.speed[1] == pytest.approx(4.0, rel=0.02)
