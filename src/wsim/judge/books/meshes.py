@@ -191,7 +191,7 @@ def touching(mesh: Triangles, shape: Shape, other: Triangles | None, pose: Float
         found.append(_over_curves(mesh, faces[curved], pose[:3], radius, reach))
     if other is None:
         found.append(_edges_in(mesh, faces, kind_of(shape).depth, pose, radius, reach))
-    return _thinned(Near.of(found))
+    return _thinned(Near.of(found), lines=True)
 
 
 def _lowest(shape: Shape, other: Triangles | None, pose: Floats, normals: Floats) -> Floats:
@@ -365,16 +365,17 @@ def _pressed(points: Floats, depth: Depth, pose: Floats, reach: float, deepest: 
     return Near(points[near][sure] + 0.5 * inside[sure, None] * -normal, normal, -inside[sure])
 
 
-def _thinned(near: Near) -> Near:
+def _thinned(near: Near, *, lines: bool = False) -> Near:
     """Contacts with about one normal, of which the outermost carry whatever all of them do.
 
-    Of those that touch, and of those that are apart: a body that leans on an edge has the corners of its side apart.
-    Where it turns on it, what touches slips each its own way, and rubs otherwise than the outermost: some of it stays.
+    Where they are of `lines`, of those that touch, and of those that are apart: a body that leans on an edge has the
+    corners of its side apart. Where it turns on it, what touches slips each its own way, and rubs otherwise than the
+    outermost: some of it stays. A mesh's corners over a plane touch one by one.
     """
     if len(near.gap) <= MANY:
         return near
     tenths = np.rint(10.0 * near.normal).astype(np.intp) + 10  # 0 to 20
-    group = np.unique(tenths @ [441, 21, 1] + 9261 * (near.gap <= NEAR), return_inverse=True)[1]
+    group = np.unique(tenths @ [441, 21, 1] + 9261 * (lines & (near.gap <= NEAR)), return_inverse=True)[1]
     order = np.argsort(group, kind="stable")
     group, point = group[order], near.point[order]
     first = np.flatnonzero(np.diff(group, prepend=-1))
@@ -383,7 +384,7 @@ def _thinned(near: Near) -> Near:
     along = point @ WAYS.T - np.einsum("ni,ni->n", point, normal)[:, None] * (normal @ WAYS.T)
     row, way = np.nonzero(along == np.maximum.reduceat(along, first)[group])
     outermost = np.unique(group[row] * len(WAYS) + way, return_index=True)[1]
-    touch = np.flatnonzero(near.gap <= NEAR)
+    touch = np.flatnonzero(lines & (near.gap <= NEAR))
     kept = [int(np.argmin(near.gap)), *order[row[outermost]], *touch[:: -(-len(touch) // SOME) or 1]]
     chosen = np.unique(kept)
     return Near(near.point[chosen], near.normal[chosen], near.gap[chosen])
