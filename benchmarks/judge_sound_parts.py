@@ -37,6 +37,7 @@ class Place:
 
 Fill = Callable[[Scene, Draw, Place], None]
 KINDS: dict[str, Fill] = {}
+DENSEST = 22_000.0  # [kg/m^3] of what is drawn: less than osmium
 
 
 def kind(fill: Fill) -> Fill:
@@ -118,8 +119,7 @@ def arms(scene: Scene, draw: Draw, place: Place) -> None:
         middle = tuple(0.5 * (a + b) for a, b in zip(point, end, strict=True))
         yaw = math.degrees(math.atan2(heading[1], heading[0]))
         pitch = -math.degrees(math.asin(heading[2] / norm))
-        # No denser than osmium: its length was drawn by itself.
-        name, densest = f"{place.name}_{k}", 22_000.0 * 0.015 * long**3
+        name, densest = f"{place.name}_{k}", DENSEST * 0.015 * long**3  # its length was drawn by itself
         mass = min(draw.density(place.size) * 0.02 * place.size**3, densest)
         scene.box(name, size=(long, 0.15 * long, 0.1 * long), position=middle, rotation_deg=(0, pitch, yaw), mass=mass)
         beyond = (count - k) * place.size
@@ -371,7 +371,8 @@ def linkages(scene: Scene, draw: Draw, place: Place) -> None:
 
     def link(which: str, a: tuple[float, float], b: tuple[float, float], y: float) -> str:
         long = math.dist(a, b)
-        scene.box(f"{name}_{which}", size=(long * s, 0.1 * s, 0.12 * s), mass=mass * long * draw.log(0.5, 2.0),
+        scene.box(f"{name}_{which}", size=(long * s, 0.1 * s, 0.12 * s),
+                  mass=min(mass * long * draw.log(0.5, 2.0), DENSEST * 0.012 * long * s**3),
                   position=place.at(0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), y),
                   rotation_deg=(0, -math.degrees(math.atan2(b[1] - a[1], b[0] - a[0])), 0))  # fmt: skip
         return f"{name}_{which}"
