@@ -128,7 +128,7 @@ SET = 'p("{}").GetAttribute("{}").Set({})'
         ("", ("friction=0.85", "friction=0.0"), "CheckPlanLooks", GROUND),
         ("", ("Noise(0.6", "Noise(0.4"), "CheckPlanTerrain", GROUND),
         ("", ("seed=4", "seed=7"), "CheckPlanTerrain", GROUND),
-        ("", ("size=(53.0, 40.0)", "size=(53.0, 44.0)"), "CheckPlanTerrain", GROUND),
+        ("", ("size=(52.0, 40.0)", "size=(52.0, 44.0)"), "CheckPlanTerrain", GROUND),
         ("", ("size=(0.3, 1.2)", "size=(2.0, 3.0)"), "CheckPlanScatter", "/World/rock_0"),
         ("", ("count=3", "count=2"), "CheckPlanObjects", "/World/rock_2"),
         ('scene.box("wall", size=(1, 1, 1), static=True)', ("", ""), "CheckPlanObjects", "/World/wall"),
@@ -265,7 +265,7 @@ def test_the_examples_of_the_prompt_are_accepted() -> None:
 @pytest.mark.parametrize(
     ("says", "change", "value"),
     [
-        (ROUGH, ("size=(53.0, 40.0)", 'size=(scene.param("a", 53.0, low=10, high=200), 40.0)'), 60.0),
+        (ROUGH, ("size=(52.0, 40.0)", 'size=(scene.param("a", 52.0, low=10, high=200), 40.0)'), 60.0),
         (ROUGH, ("Noise(0.6", 'Noise(scene.param("a", 0.6, low=0.1, high=2)'), 0.9),
         ("A golf cart drives 10 m at 2 m/s.",
          ("    scene.simulation", '    cart.drive(scene.param("a", 2.0, low=1, high=9))\n    scene.simulation'), 6.0),
