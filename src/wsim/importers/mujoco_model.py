@@ -47,7 +47,7 @@ def world_of(path: Path) -> World:
         name=prim_of(path.stem).removeprefix("/World/"),
         gravity=(0.0, 0.0, 0.0) if weightless else tuple(model.opt.gravity.tolist()),
         time_step=float(model.opt.timestep),
-        stepped="bodies" if model.opt.integrator == int(mujoco.mjtIntegrator.mjINT_RK4) else "joints",
+        stepped="neither" if model.opt.integrator == int(mujoco.mjtIntegrator.mjINT_RK4) else "joints",
         bodies=[_body(model, tree, b, shapes) for b in tree.roots],
         statics=[Static(prim=prim, shapes=shapes) for prim, shapes in statics.items()],
         joints=joints + [joint for e in range(model.neq) if (joint := closing(model, tree, e)) is not None],

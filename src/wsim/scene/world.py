@@ -345,7 +345,9 @@ class World(_Model):
     duration: float = DURATION  # [s]
     frame_rate: float = FRAME_RATE  # recorded frames a second
     time_step: float = 0.0  # [s]; 0: chosen by the simulator
-    stepped: Literal["bodies", "joints"] = "bodies"  # what its steps of first order move: places, or joints' positions
+    stepped: Literal["bodies", "joints", "neither"] = (
+        "bodies"  # what steps of first order move: places, joints, or none
+    )
     seed: int = 0
     combine: Literal["smaller", "larger"] = "smaller"  # of two surfaces' coefficients (`wsim.scene.contact`)
     cone: Literal["round", "pyramid"] = "round"  # of friction: one of four sides is weaker across its edges

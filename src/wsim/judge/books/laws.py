@@ -182,6 +182,11 @@ class Laws:
         """By how much a unit effort speeds up each joint at most [1/kg or 1/(kg m^2)]."""
         return mobilities(self._evidence)
 
+    @property
+    def _late(self) -> float:
+        """How old what a step takes of drives and springs may be [s]; one of higher order takes their mean."""
+        return 0.0 if self._evidence.world.stepped == "neither" else self._motion.step
+
     def effort(self, joint: Joint) -> Floats:
         """What the law of a joint's drive gives at each frame, as much as it can, (T,) [N or N m]."""
         drive, track = joint.drive, self._evidence.joint(joint)
@@ -198,7 +203,7 @@ class Laws:
         if drive is None or track is None:
             return None
         h, left, rate = self._motion.h, track.position - drive.position, self.rate(joint)
-        step = self._motion.step if late else 0.0
+        step = self._late if late else 0.0
         mean, may = jolts.mean_force((drive.stiffness, drive.damping), left, rate, h, step)
         most = drive.stiffness * np.abs(left) + drive.damping * np.abs(rate - drive.velocity)
         below = np.maximum(most[1:], most[:-1]) < (np.inf if drive.max_effort is None else drive.max_effort)
@@ -215,7 +220,7 @@ class Laws:
         """
         motion, track = self._motion, track_of_spring(self._evidence, spring)
         gains, stretch = (spring.stiffness, spring.damping), track.length - spring.rest_length
-        mean, may = jolts.mean_force(gains, stretch, track.rate, motion.h, motion.step)
+        mean, may = jolts.mean_force(gains, stretch, track.rate, motion.h, self._late)
         if not motion.step:  # a step's start has the rate by which the length went in the one before
             may = may + 0.5 * self._step(law) / motion.h * spring.damping * np.abs(np.diff(track.rate))
         may = may + 8.0 * FLOAT32 * spring.damping * np.abs(motion.com).max(initial=0.0) / motion.h
