@@ -264,8 +264,12 @@ def test_a_driver_that_brakes_has_the_time_that_its_stop_takes() -> None:
         set_down(Plan.model_validate(data))
 
     stop = 5.0 / (0.9 * 9.81)
-    for brake, begins in (({"at": [0.0, 0.0]}, 2.0), ({"at": [0.0, 0.0], "time": 1.0}, 1.0), ({"time": 3.0}, 3.0)):
-        with pytest.raises(LayoutError, match=rf"car takes {begins + stop:.3g} s along its"):
+    with pytest.raises(LayoutError, match=rf"duration: 0\.1 s: car takes {2.0 + stop:.3g} s along its"):
+        takes(at=[0.0, 0.0])
+    for brake, begins in (({"at": [0.0, 0.0], "time": 1.0}, 1.0), ({"time": 3.0}, 3.0)):
+        with pytest.raises(
+            LayoutError, match=rf"brake\.time: {begins:g} s: car then stands at {begins + stop:.3g} s, and"
+        ):
             takes(**brake)
     with pytest.raises(LayoutError, match=r"brake\.at = \(0\.0, 3\.0\) is 3 m beside the path"):
         takes(at=[0.0, 3.0])
