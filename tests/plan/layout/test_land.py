@@ -180,6 +180,8 @@ def driven(**actuation: object) -> dict:
     [
         ([LAND, {**ROCKS, "construction": {**ROCKS["construction"], "on": "car"}}, CAR], "'car' is no terrain"),
         ([LAND, ROCKS, {**CAR, "name": "rock_1"}], "rock_1 would be a part of rock_1 and of rock; rename one"),
+        ([LAND, CAR, {**CAR, "name": "car_axle_front_left"}], "car_axle_front_left would be a part of car_a"),
+        ([LAND, {**CAR, "name": "car_spring_rear_left"}, CAR], "car_spring_rear_left would be a part of car and of"),
         ([LAND, {**LAND, "name": "more"}], "land and more are both the ground; keep one"),
         ([{**LAND, "pose": {"position": [0, 0, 1]}}], "land: terrain lies about the origin; remove its pose"),
         ([{**LAND, "material": None}], 'land: terrain needs a "material"'),
