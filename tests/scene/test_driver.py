@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.ways import lane_change, ring
-from wsim.scene import Brake, Driver, SceneError, VehicleSpec
+from wsim.scene import Arc, Brake, Driver, Legs, SceneError, VehicleSpec
 from wsim.scene.vehicle_spec import CORNERS, preset
 
 SPEC = preset("hmmwv")
@@ -202,6 +202,57 @@ def test_it_waits_where_it_is_to_and_goes_on():
     assert found[:, 2].max() == pytest.approx(4.0, rel=0.02)
 
 
+def test_where_a_way_passes_twice_it_brakes_the_last_time_and_waits_each_time_in_turn():
+    """Two laps of 10 m, 2 pi 10 m each: the pieces of the second lie beside those of the first, up to R / 1000 off."""
+    lap = 20.0 * math.pi
+    two = Legs((0.0, 0.0), 0.0, [Arc(10.0, 360.0), Arc(10.0, 200.0)]).line()
+    given = {"path": two, "speed": 5.0}
+    assert Driver("truck", "hmmwv", **given, brake=Brake(at=(0.0, 0.0))).brakes_at == pytest.approx(lap, rel=1e-3)
+    once = Driver("truck", "hmmwv", **given, brake=Brake(at=(10.0, 10.0))).brakes_at
+    assert once == pytest.approx(1.25 * lap, rel=1e-3)
+    times = Driver("truck", "hmmwv", **given, waits=[(10.0, 10.0, 2.0), (0.0, 0.0, 0.0), (10.0, 10.0, 1.0)])._waits
+    assert times == [(pytest.approx(0.25 * lap, rel=1e-3), 2.0), (pytest.approx(1.25 * lap, rel=1e-3), 1.0)]
+
+
+def test_after_a_lap_it_brakes_where_it_began():
+    """It sets off, and stands v² / (2 a) after the lap, a = 4 T / r and rolling."""
+    lap = ring(10.0, 1.0)
+    driver = Driver("truck", "hmmwv", path=lap, speed=4.0, brake=Brake(at=tuple(lap[0]), share=0.5))
+    world = WithABall(0.0)
+    for k in range(2500):
+        driver.drive(world, 0.01 * k)
+        for _ in range(10):
+            world.step(0.001)
+    slows = (0.5 * 4.0 * SPEC.brake_torque / SPEC.wheel_radius + SPEC.rolling * SPEC.mass * G) / SPEC.effective_mass
+    fast = 4.0 * math.sqrt(1.0 - (HALF / 10.0) ** 2)  # of the rear axle, inside
+    assert driver.distance == pytest.approx(20.0 * math.pi + fast**2 / (2.0 * slows), abs=0.2)
+    assert np.abs(world.speed).max() < 0.02
+
+
+@pytest.mark.parametrize("length", [0.01, 0.1, 0.4, 0.5, 0.51, 1.0])
+def test_it_goes_a_short_way_from_rest_to_rest(length):
+    driver = Driver("truck", "hmmwv", path=[(0.0, 0.0), (length, 0.0)], speed=3.0)
+    found = driven(driver, 4.0)
+    assert found[-1, 0] == pytest.approx(length, abs=max(0.02, 0.1 * length)) and abs(found[-1, 2]) < 0.02
+
+
+@pytest.mark.parametrize("length", [0.2, 3.0, 40.0, 3000.0])
+def test_its_timetable_is_that_of_its_speeds(length):
+    """From rest to rest at 2 and 3 m/s²: s / v + v (1/2 + 1/3) / 2 where it comes to v, else sqrt(2 s (1/2 + 1/3))."""
+    driver = Driver("truck", "hmmwv", path=[(0.0, 0.0), (length, 0.0)], speed=5.0)
+    along, when = driver.timetable()
+    least = 5.0 / 6.0
+    theory = length / 5.0 + 2.5 * least if length > 12.5 * least else math.sqrt(2.0 * length * least)
+    assert along[-1] == pytest.approx(length) and when[-1] == pytest.approx(theory, rel=0.1 if length < 1.0 else 0.02)
+    waiting = Driver("truck", "hmmwv", path=[(0.0, 0.0), (length, 0.0)], speed=5.0, waits=[(0.5 * length, 0.0, 7.0)])
+    along, when = waiting.timetable()
+    k = int(np.argmax(np.diff(when)))
+    assert np.diff(when)[k] == pytest.approx(7.0) and along[k] == along[k + 1] == pytest.approx(0.5 * length)
+    half = 0.5 * length
+    part = half / 5.0 + 2.5 * least if half > 12.5 * least else math.sqrt(2.0 * half * least)
+    assert when[-1] == pytest.approx(7.0 + 2.0 * part, rel=0.1 if length < 1.0 else 0.02)
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_it_waits_anywhere_on_its_path(seed):
     """At up to four places, however near the start, the end or each other, and comes to the end."""
@@ -253,6 +304,9 @@ def test_it_waits_on_a_slope_whatever_it_carries(lean, more):
         ({"brake": Brake(at=(5.0, 1.0))}, "brake.at = (5.0, 1.0) is 1 m beside the path; give a place on it"),
         ({"brake": Brake(time=-1.0)}, "brake.time = -1 must be >= 0 s"),
         ({"brake": Brake(time=1.0, share=2.0)}, "brake.share = 2 must be <= 1"),
+        ({"brake": Brake(time=1.0, share=0.0)}, "brake.share = 0 must be >= 0.01"),
+        ({"brake": Brake(near="truck", within=3.0)}, 'brake.near = "truck" is the vehicle itself'),
+        ({"path": [(-6e3, 0.0), (6e3, 0.0)]}, "path is 12000 m long; it must be 10000 m at most"),
         ({"path": [(0.0, 0.0)]}, "path has 1 points; it must be 2"),
         ({"path": [(0.0, 0.0), (0.0, math.nan)]}, "path[1][1] = nan must be finite"),
         ({"speed": 0.0}, "speed = 0 must be > 0"),
@@ -286,15 +340,18 @@ class WithABall(Bicycle):
 
 
 def test_it_brakes_for_a_body_that_is_near_in_the_world_where_it_is():
-    """From 4 m/s at 5 m of it: torque alone, 4 T / r and rolling, stops it in v² / (2 a); the other world drives on."""
+    """From 4 m/s at 5 m of it: torque alone, 4 T / r and rolling, stops it in v² / (2 a).
+
+    The other world, where it never comes, goes to the path's end and stops there.
+    """
     brake = Brake(near="ball", within=5.0, share=0.5)
     driver = Driver("truck", "hmmwv", path=straight(12.0), speed=4.0, start_speed=4.0, brake=brake)
     world = WithABall(4.0)
-    for k in range(300):
+    for k in range(500):
         driver.drive(world, 0.01 * k)
         for _ in range(10):
             world.step(0.001)
     slows = 0.5 * 4.0 * SPEC.brake_torque / SPEC.wheel_radius + SPEC.rolling * SPEC.mass * G
     assert world.place[0, 0] == pytest.approx(5.0 + 4.0**2 / (2.0 * slows / SPEC.effective_mass), abs=0.1)
     assert abs(world.speed[0]) < 0.02
-    assert world.place[1, 0] == pytest.approx(12.0, abs=0.1) and world.speed[1] == pytest.approx(4.0, rel=0.02)
+    assert world.place[1, 0] == pytest.approx(12.0, abs=0.1) and abs(world.speed[1]) < 0.02

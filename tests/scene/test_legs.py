@@ -38,12 +38,21 @@ def test_arcs_follow_each_other_without_a_kink(heading, turns):
     assert np.linalg.norm(way, axis=1).sum() == pytest.approx(length, rel=1e-3)
 
 
+def test_a_stretch_says_how_long_it_is_and_where_it_goes():
+    """A quarter of 8 m, then back at an angle of atan2(-3, 4) to +X."""
+    arc, back = Legs((0.0, 0.0), 0.0, [Arc(8.0, 90.0), (12.0, 5.0)]).stretches()
+    assert (arc.enters, arc.leaves, arc.length) == pytest.approx((0.0, 0.5 * math.pi, 4.0 * math.pi))
+    assert (back.enters, back.leaves, back.length) == pytest.approx((*[math.atan2(-3.0, 4.0)] * 2, 5.0))
+
+
 @pytest.mark.parametrize(
     ("legs", "says"),
     [
         ([], "legs has none; give a point or an Arc"),
         ([Arc(0.0, 90.0)], "legs[0].radius = 0 must be >= 0.1 m"),
         ([Arc(5.0, 0.0)], "legs[0].angle_deg = 0 turns by nothing"),
+        ([(5.0, 0.0), Arc(10.0, 1e-6)], "legs[1].angle_deg = 1e-06 makes an arc of 1.7e-07 m; leave it out"),
+        ([Arc(500.0, 900.0), Arc(500.0, 900.0)], "legs[1] ends 15708 m along the line, which is 10000 m long at most"),
         ([Arc(5.0, math.nan)], "legs[0].angle_deg = nan must be finite"),
         ([(5.0, 0.0), (5.0, 0.0)], "legs[1] = (5.0, 0.0) is where the leg before it ends"),
         ([(1.0, 2.0, 3.0)], "legs[0] = (1.0, 2.0, 3.0) has 3 numbers"),

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wsim.defaults import GRAVITY
+from wsim.limits import MIN_BRAKING
 from wsim.scene.layers import point
 from wsim.scene.validate import Call, shown
 from wsim.scene.vehicle_spec import CORNERS, VehicleSpec
@@ -26,10 +27,10 @@ class Brake:
     """All four brakes are pressed for good from the first moment that one of these comes; the engine is off then.
 
     Attributes:
-        at: A place (x, y) on the path [m].
+        at: A place (x, y) on the path [m]; where the path comes there more than once, the last time.
         time: Of the run [s].
         near, within: A body, by its prim's name, whose origin comes so near to that of the vehicle [m].
-        share: Of the brakes' torque, 0 to 1; with 1 the wheels lock where the brakes can: it stops in v²/(2 mu g).
+        share: Of the brakes' torque, 0.01 to 1; with 1 the wheels lock where the brakes can: it stops in v²/(2 mu g).
     """
 
     at: Sequence[float] | None = None
@@ -51,7 +52,7 @@ class Brake:
             time=None if self.time is None else call.within("brake.time", self.time, 0.0, 1e6, "s"),
             near=self.near,
             within=None if self.within is None else call.positive("brake.within", self.within, 1e4, "m"),
-            share=call.fraction("brake.share", self.share),
+            share=call.within("brake.share", self.share, MIN_BRAKING, 1.0),
         )
 
 

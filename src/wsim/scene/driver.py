@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wsim.defaults import GRAVITY
-from wsim.limits import MAX_DRIVE_SPEED
+from wsim.limits import MAX_DRIVE_SPEED, MAX_WAY
 from wsim.scene.brakes import Brake, Pressed
 from wsim.scene.layers import polyline
 from wsim.scene.validate import Call, shown
@@ -48,7 +48,9 @@ _TURNED = 60.0  # [deg/s] that the bicycle's angle changes by at most
 _ARRIVED = 0.02  # [m] before a place where it waits, that it is there
 _HOLDS = 0.2  # [m/s]: what is faster there is braked by all that it may
 _BACK = 8.0  # [1/m]: what is farther off than the inverse of it is brought back by all that it may
-_OFF = 0.1  # [m] of the path, that a place where it waits is away from it at most
+_OFF = 0.1  # [m] of the path, that a place where it waits or brakes is away from it at most
+_APART = 1e-6  # [m] that places are which are not the same
+_MOST = 100_000  # points of a path: arcs of 1 m and more, as long as a path may be, have fewer
 
 
 @dataclass(frozen=True)
@@ -113,25 +115,28 @@ class Driver:
             braking: At most, for bends and the end [m/s^2].
             lateral: At most, in bends: the speed there is sqrt(lateral x radius) [m/s^2].
             stop: Whether to stop at the end of the path, or to go on straight.
-            waits: (x, y, seconds) in turn: places on the path [m] where it comes to stand, and for how long [s]; for
-                0 s it goes by.
-            brake: When all brakes are pressed, for good; until then it does not slow down for the end of the path.
+            waits: (x, y, seconds) in turn: places on the path [m] where it comes to stand, and for how long [s]: each
+                time as the path first comes there after the one before. For 0 s it goes by: so one says which time.
+            brake: When all brakes are pressed, for good. With one `at` a place it does not slow down for the end of
+                the path; any other may never come, and it stops there.
 
         Raises:
-            SceneError: If the path is none, or a number is out of range.
+            SceneError: If the path is none, or longer than 10 km, or a number is out of range.
         """
         call = Call("Driver", vehicle)
         if not isinstance(vehicle, str) or not vehicle:
             call.fail(f"vehicle = {shown(vehicle)} must be the name of a vehicle")
         self.vehicle, self.spec = vehicle, spec_of(call, spec)
-        points = polyline(call, path, "path")
+        points = polyline(call, path, "path", most=_MOST)
+        if (length := float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())) > MAX_WAY:
+            call.fail(f"path is {length:.6g} m long; it must be {MAX_WAY:g} m at most")
         top = call.positive("speed", speed, MAX_DRIVE_SPEED, "m/s")
         begins = call.within("start_speed", start_speed, 0.0, MAX_DRIVE_SPEED, "m/s")
-        self._stop = call.flag("stop", stop) and brake is None
         limits = [call.positive(name, value, 20.0, "m/s^2") for name, value in
                   (("acceleration", acceleration), ("braking", braking), ("lateral", lateral))]  # fmt: skip
         self._waits, self._braking = _waits(call, points, waits), limits[1]
-        self._brake, self._brakes_at = _brake(call, points, brake)
+        self._brake, self._brakes_at = _brake(call, vehicle, points, brake)
+        self._stop = call.flag("stop", stop) and math.isinf(self._brakes_at)
         stands = [place for place, _ in self._waits]
         self._profile = _profile(points, top, begins, *limits, stop=self._stop, stands=stands)
         self._begin(1)
@@ -166,6 +171,16 @@ class Driver:
     def speed_at(self, distance: float) -> float:
         """What it is asked for after so much of the path [m/s]."""
         return float(self._profile.speed_at(np.array([float(distance)]))[0])
+
+    def timetable(self) -> tuple[Floats, Floats]:
+        """How far along the path it is [m] and when [s], (N,) each, by its own speeds and waits, as if unbraked."""
+        along, speed = self._profile.along, self._profile.speed
+        when = np.append(0.0, np.cumsum(np.diff(along) / np.maximum(0.5 * (speed[1:] + speed[:-1]), 1e-6)))
+        for place, seconds in reversed(self._waits):
+            k = int(np.searchsorted(along, place))
+            along = np.insert(along, k, place)
+            when = np.concatenate([when[: k + 1], when[k:] + seconds])
+        return along, when
 
     def _begin(self, worlds: int) -> None:
         self._way = np.zeros(worlds)
@@ -288,19 +303,28 @@ def _forward(rotation: Floats) -> Floats:
     return np.stack([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w)], axis=1)
 
 
-def _brake(call: Call, points: Floats, given: Brake | None) -> tuple[Brake | None, float]:
+def _brake(call: Call, vehicle: str, points: Floats, given: Brake | None) -> tuple[Brake | None, float]:
     """When it brakes, and where along the line that is at the latest [m]."""
     if given is None:
         return None, math.inf
     if not isinstance(given, Brake):
         call.fail(f"brake = {shown(given)} must be a Brake")
     brake = given.checked(call)
+    if brake.near == vehicle:
+        call.fail(f"brake.near = {shown(vehicle)} is the vehicle itself; name another body")
     if brake.at is None:
         return brake, math.inf
     place, away = _along(points, brake.at)
     if away.min() > _OFF:
         call.fail(f"brake.at = {shown(given.at)} is {away.min():.3g} m beside the path; give a place on it")
-    return brake, float(place[np.flatnonzero(away <= away.min() + 1e-9)[0]])
+    return brake, _passes(place, away)[-1]
+
+
+def _passes(place: Floats, away: Floats) -> list[float]:
+    """Each time that a line comes by a place: how far along it is nearest then [m]; as `_along` returns both."""
+    close = np.flatnonzero(away <= _OFF)
+    times = np.split(close, np.flatnonzero(np.diff(close) > 1) + 1)
+    return [float(place[pieces[away[pieces].argmin()]]) for pieces in times if len(pieces)]
 
 
 def _along(points: Floats, at: Sequence[float]) -> tuple[Floats, Floats]:
@@ -323,11 +347,10 @@ def _waits(call: Call, points: Floats, given: Sequence[Sequence[float]]) -> list
             call.fail(f"waits[{k}] = {shown(each)} must be (x, y, seconds)")
         x, y = (call.number(f"waits[{k}]", value) for value in each[:2])
         seconds = call.within(f"waits[{k}]", each[2], 0.0, 3600.0, "s")
-        place, away = _along(points, (x, y))
-        after = place > last
-        if not (after & (away <= _OFF)).any():
+        after = [along for along in _passes(*_along(points, (x, y))) if along > last + _APART]
+        if not after:
             call.fail(f"waits[{k}] = {shown(each)} is not on the path, after where it starts and waits before")
-        last = float(place[np.flatnonzero(after & (away <= away[after].min() + 1e-9))[0]])
+        last = after[0]
         found += [(last, seconds)] if seconds > 0.0 else []
     return found
 
@@ -346,9 +369,9 @@ def _profile(
     heading = np.unwrap(np.arctan2(*np.diff(points, axis=0).T[::-1]))
     bend = np.zeros(len(points))
     bend[1:-1] = np.abs(np.diff(heading)) / (0.5 * (gaps[1:] + gaps[:-1]))
-    zero = [0.0, *stands, float(given[-1])]  # between any two of these there is a place where it may go
+    zero = [0.0, *stands, float(given[-1])]  # between any two of these there is a place where it goes
     places = [np.linspace(a, b, math.ceil((b - a) / _LONGEST) + 1) for a, b in pairwise(given)]
-    along = np.unique(np.concatenate([*places, stands, [0.5 * (a + b) for a, b in pairwise(zero)] if stands else []]))
+    along = np.unique(np.concatenate([*places, stands, [0.5 * (a + b) for a, b in pairwise(zero)]]))
     points = np.stack([np.interp(along, given, points[:, k]) for k in (0, 1)], axis=1)
     speed, gaps = np.full(len(along), top), np.diff(along)
     speed[np.searchsorted(along, given)] = np.minimum(top, np.sqrt(lateral / np.maximum(bend, 1e-9)))

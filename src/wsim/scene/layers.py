@@ -313,11 +313,11 @@ def point(call: Call, name: str, value: object) -> tuple[float, float]:
     )
 
 
-def polyline(call: Call, points: object, name: str = "points", least: int = 2) -> Floats:
+def polyline(call: Call, points: object, name: str = "points", least: int = 2, most: int = 2000) -> Floats:
     """Points (x, y) [m], (N, 2), no two after another in one place."""
     listed = call.listed(name, points, "a list of (x, y) in m")
-    if not least <= len(listed) <= 2000:
-        call.fail(f"{name} has {len(listed)} points; it must be {least} to 2000")
+    if not least <= len(listed) <= most:
+        call.fail(f"{name} has {len(listed)} points; it must be {least} to {most}")
     line = np.array([point(call, f"{name}[{k}]", each) for k, each in enumerate(listed)])
     gaps = np.linalg.norm(np.diff(line, axis=0), axis=1)
     if gaps.min() < 1e-3:

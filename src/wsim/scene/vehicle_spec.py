@@ -115,10 +115,14 @@ class VehicleSpec:
         """What the driving force speeds up: the mass, and the wheels' inertia over their radius squared [kg]."""
         return self.mass + 4.0 * self.wheel_inertia / self.wheel_radius**2
 
-    def braking(self, share: float = 1.0) -> float:
-        """How fast it slows down on the level with its brakes pressed by a share, where the tyres' friction counts
-        [m/s^2]: mu g where they lock the wheels, else what their torque gives."""
-        return min(self.friction * GRAVITY, 4.0 * share * self.brake_torque / self.wheel_radius / self.effective_mass)
+    def braking(self, share: float = 1.0, ground: float = math.inf) -> float:
+        """How fast it slows down on the level with its brakes pressed by a share [m/s^2].
+
+        mu g where they lock the wheels, mu the smaller friction of the tyres and the `ground`; else what their torque
+        gives.
+        """
+        most = min(self.friction, ground) * GRAVITY
+        return min(most, 4.0 * share * self.brake_torque / self.wheel_radius / self.effective_mass)
 
     def load(self, corner: str, gravity: float) -> float:
         """Push of the level ground on a wheel at rest [N]."""

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
+from wsim.limits import MAX_WAY
 from wsim.plan.layout.errors import LayoutError
-from wsim.plan.schema import Actuation, ArcPlan, FromTerrain, FromVehicle, Plan, PlanObject
+from wsim.plan.layout.trips import Trip, check_land, check_time, ground_friction
+from wsim.plan.schema import Actuation, ArcPlan, FromVehicle, Plan, PlanObject
 
 if TYPE_CHECKING:
-    from wsim.scene import Driver
     from wsim.scene.layers import Floats
     from wsim.scene.vehicle_spec import VehicleSpec
 
 Spot = tuple[float, float]
-SLOWEST = 0.1  # [m/s]: where it sets off and stops
 ROUNDED = 1e-4  # [m]
+CORNER = math.radians(45.0)  # that a way turns by at most from leg to leg: R tan(alpha / 2) is about a driver's lead
 
 
 def way_of(item: PlanObject, actuation: Actuation) -> list[Spot]:
@@ -59,10 +61,17 @@ def line_of(item: PlanObject, actuation: Actuation) -> Floats:
 
 
 def stops(item: PlanObject, actuation: Actuation) -> list[tuple[float, float, float]]:
-    """A driver's (x, y, seconds), of where its route's legs end, up to the last where it waits."""
+    """A driver's (x, y, seconds), of where its route's legs end, up to the last where it waits.
+
+    An arc of more than a turn comes by its end before it is there: it goes by, 0 s.
+    """
     last = max((k for k, seconds in enumerate(actuation.waits) if seconds > 0.0), default=-1)
-    ends = way_of(item, actuation)[1:]
-    return [(*end, seconds) for end, seconds in zip(ends, actuation.waits[: last + 1], strict=False)]
+    found: list[tuple[float, float, float]] = []
+    legs = zip(actuation.route, way_of(item, actuation)[1:], actuation.waits[: last + 1], strict=False)
+    for leg, end, seconds in legs:
+        before = math.ceil(abs(leg.angle_deg) / 360.0) - 1 if isinstance(leg, ArcPlan) else 0
+        found += [*[(*end, 0.0)] * before, (*end, seconds)]
+    return found
 
 
 def drive_time(
@@ -81,19 +90,7 @@ def drive_time(
         driver = Driver(kind, kind, path=line, speed=speed, start_speed=max(0.0, start_speed), waits=stands)
     except SceneError as error:
         raise LayoutError(str(error)) from error
-    return _takes(driver, line) + sum(waits)
-
-
-def _takes(driver: Driver, line: Floats) -> float:
-    """By its own speeds [s], to the end of its way or to where it has come to stand after its brake."""
-    total, along = 0.0, 0.0
-    for a, b in pairwise(line):
-        step = min(math.dist(a, b), driver.brakes_at - along)
-        if step <= 0.0:
-            break
-        fast = 0.5 * (driver.speed_at(along) + driver.speed_at(along + step))
-        total, along = total + step / max(fast, SLOWEST), along + step
-    return total
+    return float(driver.timetable()[1][-1])
 
 
 def check_drives(plan: Plan) -> None:
@@ -102,64 +99,79 @@ def check_drives(plan: Plan) -> None:
     Raises:
         LayoutError: One cannot, has not, or the scene would refuse it.
     """
-    for item in plan.objects:
-        for each in item.registration.actuation:
-            if each.kind != "driver" or each.speed is None or not isinstance(item.built, FromVehicle):
-                continue
-            if item.pose is None:
-                continue
-            takes = _checked(plan, item, each, each.speed)
-            if takes > plan.simulation.duration:
-                raise LayoutError(
-                    f"simulation.duration: {plan.simulation.duration:g} s: {item.name} takes {takes:.3g} s along its "
-                    f"route at {each.speed:g} m/s; give it {math.ceil(takes + 1.0)} s, or a shorter route"
-                )
+    for i, item in enumerate(plan.objects):
+        for j, each in enumerate(item.registration.actuation):
+            if each.kind == "driver" and isinstance(item.built, FromVehicle) and item.pose is not None:
+                _check(plan, item, each, f"objects.{i}.registration.actuation.{j}")
 
 
-def _checked(plan: Plan, item: PlanObject, each: Actuation, speed: float) -> float:
-    """What a driver takes [s], its brake too, whose time may come before its place does."""
-    from wsim.scene import Brake, Driver, SceneError  # as above
+def _check(plan: Plan, item: PlanObject, each: Actuation, where: str) -> None:
+    """One of them, whose place in the plan is `where`."""
+    from wsim.scene import Brake, Driver  # as above
     from wsim.scene.vehicle_spec import preset
 
-    assert isinstance(item.built, FromVehicle)
-    kind, brake = item.built.vehicle, None
-    try:
-        if each.brake is not None:
-            brake = Brake(**each.brake.model_dump())
+    assert isinstance(item.built, FromVehicle) and each.speed is not None
+    kind, spec = item.built.vehicle, preset(item.built.vehicle)
+    with _told(f"{where}.route"):
+        if has_arcs(each):
+            _check_turns(item, each, spec, where)
+        else:
+            _check_length(way_of(item, each), where)
         line = line_of(item, each)
-        driver = Driver(item.name, kind, path=line, speed=speed, start_speed=max(0.0, item.speed_ahead),
+    with _told(where):
+        brake = Brake(**each.brake.model_dump()) if each.brake is not None else None
+        driver = Driver(item.name, kind, path=line, speed=each.speed, start_speed=max(0.0, item.speed_ahead),
                         waits=stops(item, each), brake=brake)  # fmt: skip
+    trip = Trip(driver, each.brake, spec.braking(brake.share, ground_friction(plan)) if brake is not None else math.inf)
+    check_land(plan, item, line, trip, where)
+    check_time(plan, item, each, trip, where)
+
+
+@contextmanager
+def _told(where: str) -> Iterator[None]:
+    """What the scene refuses, as of a place in the plan."""
+    from wsim.scene import SceneError  # as above
+
+    try:
+        yield
     except SceneError as error:
-        raise LayoutError(str(error)) from error
-    _check_turns(item, each, preset(kind))
-    _check_land(plan, item, line)
-    takes = _takes(driver, line) + sum(each.waits)
-    if brake is None:
-        return takes
-    last = speed if math.isinf(driver.brakes_at) else driver.speed_at(driver.brakes_at)
-    begins = takes if brake.time is None else min(takes, brake.time) if brake.at is not None else brake.time
-    return begins + last / max(preset(kind).braking(brake.share), SLOWEST)
+        raise LayoutError(f"{where}: {error}") from error
 
 
-def _check_turns(item: PlanObject, each: Actuation, spec: VehicleSpec) -> None:
-    """Whether it can turn as its arcs do."""
+def _check_length(way: Sequence[Spot], where: str) -> None:
+    """Whether a smooth line through points can be as short as a driver's way, before it is drawn."""
+    length = sum(math.dist(a, b) for a, b in pairwise(way))
+    if length > MAX_WAY:
+        raise LayoutError(f"{where}.route: {length:.6g} m long; it must be {MAX_WAY:g} m at most: leave points out")
+
+
+def _check_turns(item: PlanObject, each: Actuation, spec: VehicleSpec, where: str) -> None:
+    """Whether it can turn as its arcs do, and round the corners between its legs.
+
+    What goes round a circle of R by a corner of alpha leaves its legs R tan(alpha / 2) before it and after it; what
+    comes out of an arc begins late, and has the leg again after twice as much.
+    """
     least = math.hypot(spec.turning_radius(spec.steer_limit_deg), 0.5 * spec.wheelbase)
-    for leg in each.route:
+    for k, leg in enumerate(each.route):
         if isinstance(leg, ArcPlan) and leg.radius < least:
             raise LayoutError(
-                f"{item.name} is to drive round an arc of {leg.radius:g} m; with its wheels at "
-                f"{spec.steer_limit_deg:g} deg it goes round {least:.3g} m; make it wider"
+                f"{where}.route.{k}.radius: {item.name} is to drive round an arc of {leg.radius:g} m; with its wheels "
+                f"at {spec.steer_limit_deg:g} deg it goes round {least:.3g} m; make it wider"
             )
-
-
-def _check_land(plan: Plan, item: PlanObject, line: Floats) -> None:
-    """Whether its way stays on terrain."""
-    land = next((each for each in plan.objects if isinstance(each.built, FromTerrain)), None)
-    if land is None or not isinstance(land.built, FromTerrain):
-        return
-    for x, y in line:
-        if 2.0 * abs(x) > land.built.extent[0] + ROUNDED or 2.0 * abs(y) > land.built.extent[1] + ROUNDED:
+    legs = _legs(item, each).stretches()
+    before = [math.radians(heading_deg(item)), *(leg.leaves for leg in legs)]
+    turns = [abs(math.remainder(leg.enters - came, math.tau)) for leg, came in zip(legs, before, strict=False)]
+    for k, turn in enumerate(turns):
+        after = turns[k + 1] if k + 1 < len(turns) else 0.0
+        out = f"put an arc of {least:.3g} m or more there" if k else "start it along its way, or put an arc first"
+        if turn > CORNER:
             raise LayoutError(
-                f"{item.name} is driven to ({x:.4g}, {y:.4g}) m, where {land.name} is not; move its route, or "
-                "extend that"
+                f"{where}.route.{k}: {item.name} is to turn by {math.degrees(turn):.3g} deg on the spot where this leg "
+                f"begins; {math.degrees(CORNER):g} deg at most: {out}"
+            )
+        takes = least * (2.0 * math.tan(0.5 * turn) + math.tan(0.5 * min(after, CORNER)))
+        if takes > legs[k].length + ROUNDED:
+            raise LayoutError(
+                f"{where}.route.{k}: {item.name} takes {takes:.3g} m to turn by the corners at the ends of this leg, "
+                f"which is {legs[k].length:.3g} m long; make it longer, or {out}"
             )

@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
+from pydantic import (
+    Field,
+    SerializerFunctionWrapHandler,
+    TypeAdapter,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+    field_validator,
+    model_serializer,
+    model_validator,
+)
 
+from wsim.limits import MIN_BRAKING
 from wsim.plan.schema.base import Name, NotNegative, Number, Positive, Share, Strict, Text, Vec3, Word
 
 WayPoint = tuple[Number, Number] | tuple[Number, Number, Number]  # x, y [m], and the heading there [deg] if it matters
+_PLACE, _HEADED = TypeAdapter(tuple[Number, Number]), TypeAdapter(tuple[Number, Number, Number])
 MOST_TURN = 3600.0  # [deg] of one arc
 _REACHES = ("reach", "follow", "schedule")  # kinds that say where a robot is by time
 _OF_SOME = (  # kinds of actuation
@@ -24,11 +35,21 @@ class ArcPlan(Strict):
     radius: Positive  # [m]
     angle_deg: Number  # that it turns, to the left
 
-    @model_validator(mode="after")
-    def _turns(self) -> ArcPlan:
-        if not 0.0 < abs(self.angle_deg) <= MOST_TURN:
-            raise ValueError(f"angle_deg is {self.angle_deg:g}; an arc turns, by {MOST_TURN:g} deg at most")
-        return self
+    @field_validator("angle_deg")
+    @classmethod
+    def _turns(cls, angle_deg: float) -> float:
+        if not 0.0 < abs(angle_deg) <= MOST_TURN:
+            raise ValueError(f"angle_deg is {angle_deg:g}; an arc turns, by {MOST_TURN:g} deg at most")
+        return angle_deg
+
+
+def _leg(given: object, as_union: ValidatorFunctionWrapHandler) -> Any:
+    """An object is an arc, three numbers have a heading, all else is a place: its errors are of one of these."""
+    if isinstance(given, dict):
+        return ArcPlan.model_validate(given)
+    if isinstance(given, ArcPlan):
+        return as_union(given)
+    return (_HEADED if isinstance(given, list | tuple) and len(given) == len("xyt") else _PLACE).validate_python(given)
 
 
 class BrakePlan(Strict):
@@ -38,7 +59,7 @@ class BrakePlan(Strict):
     time: NotNegative | None = None  # [s]
     near: Name | None = None  # what moves, as its origin comes
     within: Positive | None = None  # so near to the vehicle's [m]
-    share: Share = 1.0  # of the brakes' torque
+    share: Annotated[Share, Field(ge=MIN_BRAKING)] = 1.0  # of the brakes' torque
 
     @model_validator(mode="after")
     def _says_when(self) -> BrakePlan:
@@ -62,7 +83,7 @@ class Actuation(Strict):
     words: Text = ""
     policy: Word | None = None  # of the kind "policy": the id of the network that walks the robot
     # Of a policy or a driver, one after the other. A driver with an arc goes straight from one point to the next.
-    route: tuple[WayPoint | ArcPlan, ...] = Field((), max_length=1000)
+    route: tuple[Annotated[WayPoint | ArcPlan, WrapValidator(_leg)], ...] = Field((), max_length=1000)
     speed: Positive | None = None  # along the route, or of what is driven straight on [m/s]
     steer_deg: Number | None = None  # of the kind "drive": of the front wheels, to the left
     waits: tuple[NotNegative, ...] = Field((), max_length=1000)  # of a driver: at each point of the route, in turn [s]

@@ -58,7 +58,7 @@ def _scattered(plan: Draft) -> Iterator[str]:
     for i, item in enumerate(plan.objects):
         if isinstance(item.built, FromScatter) and items.get(item.built.on, item).primitive != "terrain":
             yield f"objects.{i}.construction.on: {item.built.on!r} is no terrain of the plan; scatter it on one"
-        for prim in item.prims:
+        for prim in (*item.prims, *item.hinges):
             if owner.setdefault(prim, item.name) != item.name:
                 yield f"objects.{i}.name: {prim} would be a part of {item.name} and of {owner[prim]}; rename one"
     for i, objective in enumerate(plan.objectives):

@@ -186,6 +186,15 @@ class PlanObject(Strict):
         return (self.name,)
 
     @property
+    def hinges(self) -> tuple[str, ...]:
+        """Names of the joints that a vehicle has of its own."""
+        if not isinstance(self.built, FromVehicle):
+            return ()
+        steers = (f"steer_{corner}" for corner in CORNERS[:2])
+        joints = (*steers, *(f"{joint}_{corner}" for joint in ("axle", "spring") for corner in CORNERS))
+        return tuple(f"{self.name}_{joint}" for joint in joints)
+
+    @property
     def ahead(self) -> Vec3:
         """Its own +X at the start, in the world, of length 1."""
         _, pitch, yaw = map(math.radians, self.pose.rotation_deg if self.pose is not None else (0.0, 0.0, 0.0))

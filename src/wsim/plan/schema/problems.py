@@ -252,7 +252,8 @@ def _others(plan: Draft) -> Iterator[str]:
     cameras = {camera.name for camera in plan.cameras}
     for i, objective in enumerate(plan.objectives):
         if objective.object not in names:
-            yield f"objectives.{i}.object: no object {objective.object!r}; the plan has {_known(plan)}"
+            hint = "; as a part of a vehicle a formula alone may name it" if objective.object in parts else ""
+            yield f"objectives.{i}.object: no object {objective.object!r}; the plan has {_known(plan)}{hint}"
         if objective.ref is None and objective.kind in get_args(KindOfTwo):
             yield f'objectives.{i}.ref: "{objective.kind}" needs "ref", the name of the other object'
         if objective.ref is not None and objective.ref not in names:
