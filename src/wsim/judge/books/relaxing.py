@@ -131,9 +131,8 @@ def resolved(rate: Floats, length: Floats, h: Floats) -> tuple[Floats, Floats]:
     Of the parabola v + d s + b s (1 - s), s from 0 to 1, that begins and ends as the rate does and takes the length
     where it goes: that of a swing of 1.2 rad a frame is known to 1 % by it, and to 30 % by Euler and Maclaurin from the
     squares at both ends. What is beyond is c s (1 - s) (1 - 2 s) to the next order, c by slopes that are the means of
-    those of the parabolas at both sides of a frame, of the frame that shows less of it: beside a blow that is not the
-    blow's. One that changes the rate by d at once makes c = d / 2, and the parabola's error is d^2 / 6 at most, which
-    is 2 / 3 c^2.
+    those of the parabolas at both sides of a frame; beside a far greater change, of the frame that shows less of it.
+    A blow that changes the rate by d at once makes c = d / 2, and the parabola's error is d^2 / 6 at most: 2 / 3 c^2.
 
     Args:
         rate: Of the length, (T,) [m/s].
@@ -143,12 +142,11 @@ def resolved(rate: Floats, length: Floats, h: Floats) -> tuple[Floats, Floats]:
     change, mean = np.diff(rate), 0.5 * (rate[1:] + rate[:-1])
     bulge = 6.0 * (np.diff(length) / h - mean)
     begins, ends = (change + bulge) / h, (change - bulge) / h
-    bends = 0.5 * np.abs(begins[1:] - ends[:-1])
-    beyond = (
-        h * np.minimum(np.concatenate([bends[:1], bends]), np.concatenate([bends, bends[-1:]]))
-        if len(bends)
-        else 0.0 * h
-    )
+    bends = 0.5 * (begins[1:] - ends[:-1])
+    before, after = (h * np.concatenate(each) for each in (([0.0], -bends), (bends, [0.0])))
+    size = np.pad(np.abs(change) + np.abs(bulge), 1)
+    calm = size[1:-1] < 0.5 * np.maximum(size[:-2], size[2:])  # beside a blow, whose bend is not its own
+    beyond = np.where(calm, np.minimum(np.abs(before), np.abs(after)), 0.5 * (before + after))
     square = mean**2 + change**2 / 12.0 + bulge * mean / 3.0 + bulge**2 / 30.0
     return square * h, beyond**2 * h / 1.5
 
