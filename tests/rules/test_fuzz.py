@@ -13,7 +13,7 @@ def test_malformed_plans_neither_trace_back_nor_hang():
 
 def test_the_same_seed_makes_the_same_files():
     sources = [path.read_text(encoding="utf-8") for path in sorted(EXAMPLES.glob("*.json"))]
-    assert len(sources) == 10
+    assert sources
     files = [malformed(sources, 7, number) for number in range(30)]
     assert files == [malformed(sources, 7, number) for number in range(30)]
     assert len({raw for _, raw in files}) > 25
