@@ -43,6 +43,10 @@ class Desk:
     ledger: Ledger
     replay: Replay | None = None
 
+    def answers(self, role: str) -> bool:
+        """Whether a role's model would answer now: a recorded run has no word for what it was not asked."""
+        return self.replay is None or (bool(self.replay.left) and self.replay.left[0].role == role)
+
     def ask(
         self,
         role: str,

@@ -132,7 +132,5 @@ def decide(verdict: Verdict, held: Opinion) -> Verdict:
     ]
     findings = [*verdict.findings, *objections]
     failed = sum(not finding.passed for finding in findings)
-    return Verdict(
-        status="rejected", summary=f"{failed} of {len(findings)} findings fail, {len(objections)} by review.",
-        findings=findings,
-    )  # fmt: skip
+    summary = f"{failed} of {len(findings)} findings fail, {len(objections)} by review."
+    return verdict.model_copy(update={"status": "rejected", "summary": summary, "findings": findings})

@@ -7,11 +7,15 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from wsim.agents.ask import object_in
+from wsim.agents.ask import UnusableError, object_in
+from wsim.agents.failures import ModelError
 from wsim.agents.robots import robots_for
 from wsim.assets import search
 from wsim.errors import UserError
 from wsim.judge.language import parse
+from wsim.plan.asked.covered import missing, spans
+from wsim.plan.asked.demands import REQUIRED, demands
+from wsim.plan.asked.tied import tied
 from wsim.plan.store import made
 from wsim.program.compose import compose
 from wsim.program.validator import validate
@@ -21,6 +25,7 @@ if TYPE_CHECKING:
     from wsim.plan.schema import Plan
 
 ASSETS = 6  # of the catalogue that are offered
+NO_OBJECTIVE = "plan: objectives: none; say what must happen, so that the judge can hold the world to it"
 HINTS = (
     '{"image": {"hints": {"visible_objects": [str], "scale": str, "support": [str], "layout": [str], '
     '"scene_type": str, "action_intent": str, "constraints": [str]}}}'
@@ -46,9 +51,47 @@ def plan_with(desk: Desk, prompt: str, pictures: Sequence[bytes] = (), image: st
         known = {"path": image, "sha256": sha256(pictures[0]).hexdigest()}
         request.append(f"A reference picture is attached ({image}); fill image.hints from it: {HINTS}")
     request += [_catalogue(prompt), robots_for(prompt)]
-    return desk.ask(
-        "planner", "\n\n".join(request), lambda text: read_plan(object_in(text), prompt, known), pictures=pictures
-    )
+    kept: list[Plan] = []  # sound but for its clauses, for which a model is asked once
+
+    def read(text: str) -> Plan:
+        plan = read_plan(object_in(text), prompt, known)
+        lacks = clauses_lacking(plan)
+        if lacks and not kept and desk.answers("planner"):
+            kept.append(plan)
+            raise UnusableError(lacks)
+        return _with_clauses(plan) if kept else plan
+
+    try:
+        return desk.ask("planner", "\n\n".join(request), read, pictures=pictures)
+    except ModelError:
+        if not kept:
+            raise
+        return _with_clauses(kept[0])
+
+
+def _with_clauses(plan: Plan) -> Plan:
+    """A plan whose model was asked for clauses: without any it gets those that its words alone give."""
+    return plan if plan.clauses else tied(plan)
+
+
+def clauses_lacking(plan: Plan) -> str:
+    """What a plan passes over of its prompt, for the model to mend; empty where it is nothing.
+
+    A plan with no clauses at all is told of those that its prompt has.
+    """
+    if not plan.clauses and not (asked := [each for each in demands(plan.prompt) if each.kind in REQUIRED]):
+        return ""
+    if not plan.clauses:
+        listed = ", ".join(each.quoted for each in asked)
+        return f"plan: clauses: none; tie the words of the prompt to what shows them: {listed}"
+    wrong = [f"clauses: {clause.words!r} is not in the prompt as it stands" for clause, at in spans(plan) if not at]
+    silent = missing(plan)
+    if silent:
+        wrong.append(
+            "clauses: " + "; ".join(gap.line for gap in silent) + "; tie each to an objective or a property that shows "
+            'it, or say in "unchecked" why nothing does'
+        )
+    return f"plan: {'; '.join(wrong)}" if wrong else ""
 
 
 def read_plan(answer: dict[str, Any], prompt: str, picture: dict[str, str] | None = None) -> Plan:
@@ -71,9 +114,11 @@ def read_plan(answer: dict[str, Any], prompt: str, picture: dict[str, str] | Non
     for number, objective in enumerate(objectives if isinstance(objectives, list) else []):
         if isinstance(objective, dict) and objective.get("kind") == "formula" and "formula" not in objective:
             objective["formula"] = _formula(str(objective.get("sentence", "")), f"objectives.{number}.sentence")
+    if objectives == []:
+        raise UserError(NO_OBJECTIVE)
     plan = made(data, Path("plan"))
     if not plan.objectives:
-        raise UserError("plan: objectives: none; say what must happen, so that the judge can hold the world to it")
+        raise UserError(NO_OBJECTIVE)
     problems = validate(compose(plan), plan)  # what no program can be written for is the planner's to mend
     if problems:
         raise UserError(f"plan: no program can build it: {problems[0].message}")

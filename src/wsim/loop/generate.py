@@ -9,6 +9,8 @@ from wsim import report
 from wsim.agents.budget import BudgetError
 from wsim.agents.failures import ModelError
 from wsim.agents.models import BUILTIN, reach
+from wsim.agents.planner import NO_OBJECTIVE
+from wsim.errors import UserError
 from wsim.judge.verdict import Verdict
 from wsim.loop.making import Making
 from wsim.loop.options import Generated, Options
@@ -47,6 +49,8 @@ def generate(
     picture = picture_of(options)
     if plan is None and options.models.planner == BUILTIN:
         plan = plan_by_rules(prompt)  # refused before there is a folder
+    if plan is not None and not plan.objectives:
+        raise UserError(NO_OBJECTIVE)
     run, crew = start(prompt, runs, plan, options, progress)
     try:
         with phases.phase("plan"):

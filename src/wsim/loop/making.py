@@ -63,10 +63,14 @@ class Making:
 
     @property
     def _unfaulted(self) -> bool:
-        """Whether no check found a fault in the best: one that crashed is the judge's to be mended, not the world's."""
+        """Whether no check found a fault in the best: one that crashed is the judge's to be mended, not the world's.
+
+        So is what the plan does not ask for: no program can show it.
+        """
         assert self.best is not None
         verdict = self.best.verdict
-        return verdict.status == "accepted" or (bool(verdict.crashes) and not verdict.failures)
+        unjudged = bool(verdict.crashes or verdict.not_checked) and verdict.status == "blocked"
+        return verdict.status == "accepted" or (unjudged and not verdict.failures)
 
     def blocked(self, cause: str) -> Verdict:
         """The verdict on a run that could not go on: why, and the best so far."""

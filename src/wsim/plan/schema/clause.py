@@ -1,0 +1,74 @@
+"""Clauses of the prompt in a plan: its words, and what shows that they came true."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated
+
+from pydantic import Field, model_validator
+
+from wsim.plan.schema.base import Sparse, Text
+
+if TYPE_CHECKING:
+    from wsim.plan.schema.draft import Draft
+
+# What of an object, and of a joint, the judge holds the world to, where the plan states it.
+OF_OBJECTS = (
+    "size", "mass", "density", "material", "color", "place", "velocity", "spin", "surface_velocity", "friction",
+    "restitution", "rolling", "level", "actuation",
+)  # fmt: skip
+OF_JOINTS = ("axis", "limits", "drive")
+WHOLE = "simulation"  # the run itself: its duration
+Index = Annotated[int, Field(ge=0)]
+Thing = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*(\.[a-z_]+)?$", max_length=120)]
+
+
+class Clause(Sparse):
+    """Words of the prompt, and what answers for them; or why nothing does.
+
+    Attributes:
+        words: As they stand in the prompt, one after another.
+        by: Numbers of objectives, counted from 0; names of objects and joints, of one property with a dot: "puck.mass".
+        unchecked: Why nothing shows that they came true; given in place of `by`.
+    """
+
+    words: Text
+    by: list[Index | Thing] | None = Field(None, max_length=1000)
+    unchecked: Text | None = None
+
+    @model_validator(mode="after")
+    def _says_one(self) -> Clause:
+        if bool(self.by) == bool(self.unchecked):
+            raise ValueError(
+                f'the clause "{self.words}": give "by", the objectives and objects that show it, or "unchecked", why '
+                "none does"
+            )
+        return self
+
+    @property
+    def objectives(self) -> list[int]:
+        """Numbers of the objectives that answer for it."""
+        return [each for each in self.by or [] if isinstance(each, int)]
+
+    @property
+    def things(self) -> list[tuple[str, str]]:
+        """(name, property) of what else does; the property is empty where the thing itself is meant."""
+        named = [each for each in self.by or [] if isinstance(each, str)]
+        return [(name, field) for name, _, field in (each.partition(".") for each in named)]
+
+
+def clause_problems(plan: Draft) -> Iterator[str]:
+    """What a clause names and the plan has not."""
+    objects, joints = {item.name for item in plan.objects}, {joint.name for joint in plan.joints}
+    for i, clause in enumerate(plan.clauses):
+        for number in clause.objectives:
+            if number >= len(plan.objectives):
+                yield (
+                    f"clauses.{i}.by: no objective {number}; the plan has {len(plan.objectives)}, and they count from 0"
+                )
+        for name, field in clause.things:
+            fields = OF_OBJECTS if name in objects else OF_JOINTS if name in joints else ("duration",)
+            if name not in objects | joints | {WHOLE}:
+                yield f"clauses.{i}.by: no object or joint {name!r}; name one, or an objective by its number"
+            elif field and field not in fields:
+                yield f"clauses.{i}.by: {name} has no {field!r} that is checked; it has {', '.join(fields)}"
