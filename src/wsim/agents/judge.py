@@ -12,6 +12,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationErr
 
 from wsim.agents.ask import UnusableError, object_in
 from wsim.judge.verdict import Finding, RepairKind, RepairTarget, Verdict
+from wsim.plan.schema.explain import explain
 
 if TYPE_CHECKING:
     from wsim.agents.ask import Desk
@@ -99,7 +100,7 @@ def _read(text: str, names: set[str], passed: bool) -> Opinion:
     except ValidationError as error:
         problem = error.errors(include_url=False)[0]
         hint = f"; kinds are {', '.join(get_args(RepairKind))}" if "kind" in problem["loc"] else ""
-        raise UnusableError(f"{'.'.join(map(str, problem['loc']))}: {problem['msg']}{hint}") from error
+        raise UnusableError(f"{explain(error)}{hint}") from error
     for objection in found.objections:
         if objection.object not in names:
             raise UnusableError(

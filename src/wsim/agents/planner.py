@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any
 from wsim.agents.ask import UnusableError, object_in
 from wsim.agents.failures import ModelError
 from wsim.agents.robots import robots_for
+from wsim.agents.shorthand import written_out
 from wsim.assets import search
 from wsim.errors import UserError
-from wsim.judge.language import parse
 from wsim.plan.asked.covered import missing, spans
 from wsim.plan.asked.demands import REQUIRED, demands
 from wsim.plan.asked.tied import tied
+from wsim.plan.feasible.plan import refuse_impossible
 from wsim.plan.store import made
 from wsim.program.compose import compose
 from wsim.program.validator import validate
@@ -108,45 +109,17 @@ def read_plan(answer: dict[str, Any], prompt: str, picture: dict[str, str] | Non
     data = {"title": prompt[:80], **answer, "prompt": prompt}
     if picture and isinstance(data.get("image") or {}, dict):
         data["image"] = {**(data.get("image") or {}), **picture}
-    if isinstance(data.get("objects"), list):
-        data["objects"] = [_written_out(item) if isinstance(item, dict) else item for item in data["objects"]]
-    objectives = data.get("objectives")
-    for number, objective in enumerate(objectives if isinstance(objectives, list) else []):
-        if isinstance(objective, dict) and objective.get("kind") == "formula" and "formula" not in objective:
-            objective["formula"] = _formula(str(objective.get("sentence", "")), f"objectives.{number}.sentence")
-    if objectives == []:
+    data = written_out(data)
+    if data.get("objectives") == []:
         raise UserError(NO_OBJECTIVE)
     plan = made(data, Path("plan"))
     if not plan.objectives:
         raise UserError(NO_OBJECTIVE)
+    refuse_impossible(plan)
     problems = validate(compose(plan), plan)  # what no program can be written for is the planner's to mend
     if problems:
         raise UserError(f"plan: no program can build it: {problems[0].message}")
     return plan
-
-
-def _written_out(item: dict[str, Any]) -> dict[str, Any]:
-    """An object whose `primitive` and `size`, or `asset`, and `relations` may stand at its top."""
-    full = dict(item)
-    if "construction" not in full:
-        if "asset" in full:
-            full["construction"] = {"kind": "asset", "asset": full.pop("asset")}
-        elif "primitive" in full:
-            full["construction"] = {"primitive": full.pop("primitive"), "size": full.pop("size", [])}
-    if isinstance(full.get("construction"), dict):
-        full["construction"] = {"kind": "proxy", **full["construction"]}
-    if "relations" in full and "topology" not in full:
-        full["topology"] = {"relation": full.pop("relations")}
-    if isinstance(full.get("position"), list) and "pose" not in full:
-        full["pose"] = {"position": full.pop("position"), "rotation_deg": full.pop("rotation_deg", [0, 0, 0])}
-    return full
-
-
-def _formula(sentence: str, where: str) -> dict[str, Any]:
-    try:
-        return parse(sentence).model_dump(mode="json", exclude_none=True)
-    except ValueError as error:
-        raise UserError(f"{where}: {error}") from error
 
 
 def _catalogue(prompt: str) -> str:

@@ -11,6 +11,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationErr
 
 from wsim.agents.ask import UnusableError, object_in
 from wsim.agents.sheet import contact_sheet, shares
+from wsim.plan.schema.explain import explain
 from wsim.runs.folder import write_json
 
 if TYPE_CHECKING:
@@ -99,8 +100,7 @@ def _read(text: str, names: set[str]) -> Review:
     try:
         found = Review.model_validate(object_in(text))
     except ValidationError as error:
-        problem = error.errors(include_url=False)[0]
-        raise UnusableError(f"{'.'.join(map(str, problem['loc']))}: {problem['msg']}") from error
+        raise UnusableError(explain(error)) from error
     for difference in found.differences:
         if difference.object not in names:
             raise UnusableError(

@@ -13,6 +13,7 @@ import typer
 from wsim import loop, recording
 from wsim.agents.budget import Budget
 from wsim.agents.models import BUILTIN, choose
+from wsim.agents.shorthand import load_given
 from wsim.cli.approve import approved, with_answers
 from wsim.cli.options import (
     EXIT_CODES,
@@ -38,7 +39,6 @@ from wsim.door import load_beside
 from wsim.errors import UserError
 from wsim.loop.options import Options
 from wsim.phases import since_start
-from wsim.plan.store import load
 from wsim.program.drafted import refuse_unbuildable
 from wsim.rules.planner import plan as make_plan
 from wsim.runs.folder import check_base
@@ -182,7 +182,7 @@ def _replay(recorded: Path, runs: Path, device: str) -> None:
 def _agreed(prompt: str, path: Path | None, answers: Path | None, yes: bool, isolation: str) -> Plan | None:
     """The plan to build: a file of answers is a yes, as --yes is; else a person is asked."""
     planner = make_plan if path is None else None
-    proposed = with_answers(make_plan(prompt) if path is None else load(path), planner, answers)
+    proposed = with_answers(make_plan(prompt) if path is None else load_given(path), planner, answers)
     if path is not None:
         refuse_unbuildable(proposed, path, isolation)
     if not (yes or answers):

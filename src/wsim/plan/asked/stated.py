@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
+from wsim.plan.layout.boxes import rotation
 from wsim.plan.schema.clause import WHOLE
 
 if TYPE_CHECKING:
@@ -14,8 +15,9 @@ if TYPE_CHECKING:
 
 ROUNDING = 0.05  # share: "about half a metre" is planned as 0.48 m
 FIELDS = {  # by unit: where a number of it may stand in an object or a joint that is named without a property
-    "m": ("size", "limits"), "kg": ("mass",), "kg/m^3": ("density",), "m/s": ("velocity", "surface_velocity", "drive"),
-    "deg/s": ("spin", "drive"), "deg": ("limits", "drive"), "N": ("drive",), "s": ("duration",),
+    "m": ("size", "limits", "anchor"), "kg": ("mass",), "kg/m^3": ("density",),
+    "m/s": ("velocity", "surface_velocity", "drive"),
+    "deg/s": ("spin", "drive"), "deg": ("limits", "drive", "direction"), "N": ("drive",), "s": ("duration",),
 }  # fmt: skip
 OPEN = ("place", "level", "actuation")  # a stated distance may be the difference of two places, or one of many
 _POINTS = ("target", "center", "path", "at")  # of formulas: places in the world
@@ -86,6 +88,9 @@ def _of_object(plan: Plan, item: PlanObject, field: str) -> Iterator[float]:
     if field in vectors:
         vector = vectors[field] or (0.0, 0.0, 0.0)
         yield from (*vector, math.hypot(*vector), math.hypot(*vector[:2]))
+    elif field == "direction" and any(item.velocity):
+        x, y, z = item.velocity
+        yield from (math.degrees(math.atan2(z, math.hypot(x, y))), math.degrees(math.atan2(y, x)))
     elif field == "size":
         yield from (*item.size, *(2.0 * edge for edge in item.size), *(item.dimensions or ()))
     elif field in ("mass", "density"):
@@ -98,10 +103,26 @@ def _of_object(plan: Plan, item: PlanObject, field: str) -> Iterator[float]:
         yield from (value for row in item.relations for value in (row.value, row.gap) if value is not None)
         if item.pose is not None:
             yield from (*item.pose.position, *item.pose.rotation_deg)
+            yield from _distances(plan, item)
+
+
+def _distances(plan: Plan, item: PlanObject) -> Iterator[float]:
+    """From its centre to those of others, and to the anchors of joints [m]."""
+    assert item.pose is not None
+    poses = {each.name: each.pose for each in plan.objects if each.pose is not None}
+    yield from (math.dist(item.pose.position, pose.position) for name, pose in poses.items() if name != item.name)
+    for joint in plan.joints:
+        pose, own = poses.get(joint.child), joint.anchor or (0.0, 0.0, 0.0)
+        if pose is not None:
+            turn = rotation(pose.rotation_deg)
+            place = [pose.position[i] + sum(turn[i][k] * own[k] for k in range(3)) for i in range(3)]
+            yield math.dist(item.pose.position, place)
 
 
 def _of_joint(joint: Joint, field: str) -> Iterator[float]:
-    if field == "limits":
+    if field == "anchor" and joint.anchor is not None:
+        yield math.hypot(*joint.anchor)
+    elif field == "limits":
         yield from joint.limits or ()
     elif field == "drive" and joint.drive is not None:
         yield from (joint.drive.velocity, joint.drive.position, joint.drive.max_force or 0.0)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from wsim.plan.asked.demands import REQUIRED, Demand, demands, tokens
 from wsim.plan.asked.stated import FIELDS, asks, close, values
 from wsim.plan.asked.vocabulary import CAUSES
-from wsim.plan.schema.clause import WHOLE, Clause
+from wsim.plan.schema.clause import OF_JOINTS, WHOLE, Clause
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Objective, Plan, PlanObject
@@ -23,7 +23,7 @@ _SHOW = (  # verbs of one meaning alone, and the kinds of objective and predicat
     ("float", "floats level_in"),
     ("sink", "sinks submerged rests_on"),
     ("swing", "swings turned_between"),
-    ("bounce", "bounces_to climbs_to"),
+    ("bounce rebound", "bounces_to climbs_to dies_down collides_with"),
     ("slide", "slides goes_down gone_between moves"),
     ("roll", "rolls rolls_down rolls_freely rolls_without_slip"),
     ("carry", "stays_on moves contained_in"),
@@ -89,7 +89,7 @@ def _of_number(plan: Plan, demand: Demand) -> Iterator[int | str]:
         if field is not None:
             yield f"{item.name}.{field}"
     for joint in plan.joints:
-        for field in ("limits", "drive"):
+        for field in OF_JOINTS[1:]:
             if any(close(value, demand) for value in values(plan, joint.name, field)):
                 yield f"{joint.name}.{field}"
     if demand.unit:

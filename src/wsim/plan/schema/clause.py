@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
 # What of an object, and of a joint, the judge holds the world to, where the plan states it.
 OF_OBJECTS = (
-    "size", "mass", "density", "material", "color", "place", "velocity", "spin", "surface_velocity", "friction",
-    "restitution", "rolling", "level", "actuation",
+    "size", "mass", "density", "material", "color", "place", "velocity", "direction", "spin", "surface_velocity",
+    "friction", "restitution", "rolling", "level", "actuation",
 )  # fmt: skip
-OF_JOINTS = ("axis", "limits", "drive")
+OF_JOINTS = ("axis", "anchor", "limits", "drive")
 WHOLE = "simulation"  # the run itself: its duration
 Index = Annotated[int, Field(ge=0)]
 Thing = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*(\.[a-z_]+)?$", max_length=120)]
