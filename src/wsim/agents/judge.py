@@ -6,7 +6,7 @@ It may object to a world that passes every check. It cannot accept one that fail
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, get_args
+from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from wsim.plan.schema import Plan
 
 ROOT = "/World/"
+MINOR = 0.25  # of a major objection's weight
 Short = Annotated[str, AfterValidator(lambda text: text[:800])]  # who says more is heard that far
 
 
@@ -29,6 +30,7 @@ class Objection(BaseModel):
 
     object: str
     what: Short
+    severity: Literal["minor", "major"] = "major"
 
 
 class Repair(BaseModel):
@@ -56,6 +58,7 @@ class Opinion(BaseModel):
     accept: bool
     why: Short = ""
     repair: Repair | None = None
+    plan: Short | None = None  # what of the plan no program can make true
     objections: list[Objection] = Field(default_factory=list, max_length=10)
 
 
@@ -107,9 +110,14 @@ def _read(text: str, names: set[str], passed: bool) -> Opinion:
                 f"objections: the plan has no object {objection.object!r}; it has {', '.join(sorted(names))}"
             )
     if not found.accept and not found.objections and passed:
-        raise UnusableError("every check passed: accept, or object to an object of the plan; a repair is not enough")
-    if not found.accept and not found.objections and found.repair is None:
-        raise UnusableError("not accepted, and neither a repair nor an objection; say what is wrong")
+        raise UnusableError(
+            "every check passed: accept, or object to an object of the plan; neither a repair nor a fault of the plan "
+            "is enough"
+        )
+    if not found.accept and not found.objections and found.repair is None and not found.plan:
+        raise UnusableError(
+            "not accepted, and neither a repair, a fault of the plan nor an objection; say what is wrong"
+        )
     return found
 
 
@@ -127,6 +135,7 @@ def decide(verdict: Verdict, held: Opinion) -> Verdict:
             message=f"{one.object}: {one.what}",
             prim=ROOT + one.object,
             limit_from="the judge's model, from the review",
+            weight=1.0 if one.severity == "major" else MINOR,
             target=RepairTarget(kind="visual mismatch", prim=ROOT + one.object, why=one.what),
         )
         for one in held.objections

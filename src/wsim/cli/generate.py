@@ -58,6 +58,11 @@ Candidates = Annotated[
     int,
     typer.Option("--candidates", min=1, max=64, help="Patches that are tried side by side; the best of them goes on."),
 ]
+Fresh = Annotated[bool, typer.Option("--fresh", help="Ask models anew; take no replies that are kept from before.")]
+Nearest = Annotated[
+    bool,
+    typer.Option("--nearest", help="With --yes: build the nearest world too, where what is asked cannot be simulated."),
+]
 Confirm = Annotated[
     bool, typer.Option("--confirm/--no-confirm", help="Run an accepted program once more, bare, and compare.")
 ]
@@ -80,6 +85,8 @@ def generate(
     max_seconds: Seconds = 3600.0,
     model_timeout: ModelSeconds = 180.0,
     confirm: Confirm = True,
+    fresh: Fresh = False,
+    nearest: Nearest = False,
     replay: Annotated[
         Path | None, typer.Option("--replay", metavar="RUN", help="Make a recorded run again, offline.")
     ] = None,
@@ -117,6 +124,8 @@ def generate(
         image=image,
         candidates=candidates,
         confirm=confirm,
+        fresh=fresh,
+        nearest=nearest,
         start_up=since_start() or 0.0,
     )
     options.settings.check()
@@ -134,8 +143,10 @@ def _generate(prompt: str, options: Options, runs: Path, path: Path | None, answ
     said = prompt if chosen is None or (path is not None and prompt) else chosen.prompt  # answers are in the sentence
     progress = ConsoleProgress()
 
+    agreed = [builtin]  # whether this plan was shown already
+
     def approve(plan: Plan) -> bool:
-        if builtin:
+        if agreed.pop() if agreed else False:
             return True
         with progress.aside():
             show_plan(plan)

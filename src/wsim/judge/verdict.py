@@ -75,6 +75,7 @@ class Finding(BaseModel):
     limit_from: str = ""  # how the limit was got
     line: str | None = None  # "program.py:12"
     target: RepairTarget | None = None  # what to change, where the finding failed
+    weight: float = Field(1.0, gt=0.0, le=1.0, exclude_if=lambda weight: weight == 1.0)  # of one without numbers
 
 
 class Crash(BaseModel):

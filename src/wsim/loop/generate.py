@@ -35,7 +35,7 @@ def generate(
         prompt: What the world must be.
         runs: Where run folders go.
         options: Models, budget, device, limits.
-        approve: Shown the plan before anything is built.
+        approve: Shown the plan before anything is built, and one that was changed on the way before it is.
         plan: A plan to use as it is, in place of the planner's.
         progress: Told how far it is.
 
@@ -52,6 +52,7 @@ def generate(
     if plan is not None and not plan.objectives:
         raise UserError(NO_OBJECTIVE)
     run, crew = start(prompt, runs, plan, options, progress)
+    making: Making | None = None
     try:
         with phases.phase("plan"):
             plan = keep_plan(run, crew, prompt, plan, picture)  # prompt → plan
@@ -59,7 +60,8 @@ def generate(
             run.record(status="not approved", **crew.facts())
             return Generated(run, plan, None, None)
         with phases.phase("try"):
-            verdict = _world(Making(run, crew, plan, options, phases=phases))  # plan → verdict
+            making = Making(run, crew, plan, options, phases=phases, approve=approve)
+            verdict = _world(making)  # plan → verdict
     except (ModelError, BudgetError) as error:  # of the planner: there is nothing to keep but the transcript
         run.record(cause=str(error))
         verdict = Verdict(status="blocked", summary=str(error))
@@ -73,7 +75,7 @@ def generate(
         phases={"start-up": round(options.start_up, 3), **phases.rounded()},
         **crew.facts(),
     )
-    return Generated(run, plan, verdict, report.write(run.path))
+    return Generated(run, plan if making is None else making.plan, verdict, report.write(run.path))
 
 
 def _world(making: Making) -> Verdict:
@@ -85,7 +87,7 @@ def _world(making: Making) -> Verdict:
             making.keep(tried)
             if making.ends:
                 return making.verdict
-            programs = making.repairs(tried[0])  # verdict → programs
+            programs = making.next(tried[0])  # verdict → programs, or another plan
             if not programs:
                 return making.verdict
     except (ModelError, BudgetError) as error:

@@ -19,7 +19,7 @@ from wsim.report.chart import Chart
 from wsim.report.clauses import make_clauses
 from wsim.report.contents import RunContents, gather
 from wsim.report.cost import make_cost
-from wsim.report.diff import Diff, difference
+from wsim.report.diff import Diff, difference, make_diff
 from wsim.report.ending import which_is_shown, why_it_ended
 from wsim.report.facts import make_facts, make_parameters
 from wsim.report.fixes import command, describe, make_fixes
@@ -135,6 +135,8 @@ def context(contents: RunContents, most_video_bytes: int) -> dict[str, Any]:
         "plan": contents.plan,
         "objectives": _objectives(contents),
         "clauses": make_clauses(contents.plan),
+        "replans": contents.loop.replans,
+        "plan_diff": make_diff(contents.plan_diff) if contents.plan_diff else None,
         "source": _source(contents, failed),
         "output": str(shown.build().get("log") or "") if shown else "",
         "log": [line for line in recording.log if line.level not in ("TRACE", "DEBUG")] if recording else [],

@@ -21,6 +21,17 @@ class Tried(BaseModel):
     repair: str = ""  # what the judge's model wants mended first
 
 
+class Replan(BaseModel):
+    """A row of run.json's replans: the plan was found at fault, and its planner asked."""
+
+    after: int  # the iteration that was the best then
+    by: str  # "judge" or "coder"
+    fault: str
+    why: str = ""  # of the change, or of keeping the plan
+    kept: bool = False  # the planner kept it, or had none that asks for as much
+    approved: bool = False  # it was changed, and a person, or --yes, agreed
+
+
 class Account(BaseModel):
     """What one role has used."""
 
@@ -51,6 +62,7 @@ class Loop(BaseModel):
     skills: dict[str, list[str]] = Field(default_factory=dict)  # by iteration: "02"
     notes: list[str] = Field(default_factory=list)
     cause: str = ""  # why it is blocked
+    replans: list[Replan] = Field(default_factory=list)
 
     def tried(self, number: int) -> Tried | None:
         """The row of an iteration; None for one that was not finished."""
