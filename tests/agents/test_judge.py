@@ -79,7 +79,7 @@ def test_an_accepted_world_stays_accepted(server: Server, desk: Desk, slide: Pla
         ),
         (said(False, repair=REPAIR), True, "every check passed: accept, or object to an object of the plan"),
         (said(False), True, "every check passed: accept, or object"),
-        (said(False), False, "not accepted, and neither a repair nor an objection"),
+        (said(False), False, "not accepted, and neither a repair, a fault of the plan nor an objection"),
         (said(False, repair={**REPAIR, "kind": "magic"}), False, "repair.kind: .*; kinds are physical parameter"),
         (said(False, repair={"kind": "camera"}), False, "repair.why: it is missing"),
         (said(True, score=10), True, "score: there is no such field"),

@@ -9,13 +9,13 @@ from typing import Any, get_args
 
 import pytest
 
-from tests.agents.flies import BALL, CAMERA, GROUND, MOVES, PROMPT, answer
+from tests.agents.flies import BALL, CAMERA, CLAUSES, GROUND, MOVES, PROMPT, answer
 from tests.agents.scripted import Server, text
 from wsim.agents.ask import RETRIES, Desk, instructions
 from wsim.agents.failures import ModelError
 from wsim.agents.planner import HINTS, plan_with, read_plan
 from wsim.errors import UserError
-from wsim.plan.asked.covered import gaps
+from wsim.plan.asked.covered import gaps, not_checked
 from wsim.plan.schema import Plan
 from wsim.plan.schema.constructions import Construction
 from wsim.plan.schema.examples import EXAMPLES
@@ -159,6 +159,43 @@ def test_a_sound_plan_is_kept_where_clauses_are_all_that_it_lacks(server: Server
     server.forever["planner"] = text("What clauses?")
     plan = plan_with(desk, PROMPT)
     assert [(clause.words, clause.by) for clause in plan.clauses] == [("flies", [0]), ("half a metre", [0])]
+
+
+SHATTERS = "A thrown ball flies half a metre and shatters."
+WHY = "a ball that shatters: bodies are rigid"
+CANNOT = json.dumps({"cannot": WHY, "nearest": answer()})
+
+
+def test_what_cannot_be_simulated_has_the_nearest_world(server: Server, desk: Desk) -> None:
+    """A plan that passes it over is sent back with the way out."""
+    tied = [*CLAUSES[:1], {"words": "flies half a metre and shatters", "by": [0]}]
+    server.script["planner"] = [text(json.dumps(answer(clauses=tied))), text(CANNOT)]
+    plan = plan_with(desk, SHATTERS)
+    assert plan.stands_in_for == WHY
+    assert not_checked(plan) == ["'shatters': the world stands in for it"]
+    told = server.asked("planner")[1]
+    assert "'shatters': wsim has rigid bodies and water, and nothing in it can shatter" in told
+    assert 'where that is the point, answer {"cannot": what and why, "nearest"' in told
+
+
+def test_where_nothing_comes_near_there_is_no_plan(server: Server, desk: Desk) -> None:
+    server.script["planner"] = [text(json.dumps({"cannot": WHY, "nearest": None}))]
+    with pytest.raises(ModelError, match="the planner's model: cannot: a ball that shatters"):
+        plan_with(desk, SHATTERS)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"cannot": "", "nearest": None}, "say what cannot be simulated"),
+        ({"cannot": WHY, "nearest": "a cube"}, "nearest: it is a whole plan, or null"),
+        ({"cannot": WHY, "nearest": answer(objectives=[])}, "objectives: none"),
+    ],
+)
+def test_a_refusal_says_what_and_why(server: Server, desk: Desk, given: Any, message: str) -> None:
+    server.script["planner"] = [text(json.dumps(given)), text(CANNOT)]
+    plan_with(desk, SHATTERS)
+    assert message in server.asked("planner")[1]
 
 
 def test_the_catalogue_and_the_picture_go_with_the_prompt(server: Server, desk: Desk) -> None:

@@ -17,6 +17,7 @@ from tests.patience import STUCK
 from wsim.agents import relay
 from wsim.agents.budget import Budget
 from wsim.agents.planner import read_plan
+from wsim.errors import UserError
 from wsim.loop.generate import generate
 from wsim.loop.options import Generated, Options
 from wsim.loop.replay import replay
@@ -173,6 +174,52 @@ def test_an_objection_traded_for_a_smaller_one_is_kept(server: Server, tmp_path:
     kept = Kept(done.run.path)
     assert kept.rows == [("review", "rejected", True), ("review", "rejected", True)]
     assert kept.facts["best"] == 2
+
+
+SHATTERS = "A thrown ball flies half a metre and shatters."
+INSTEAD = json.dumps({"cannot": "a ball that shatters: bodies are rigid", "nearest": answer(simulation=LONGER)})
+
+
+@pytest.mark.parametrize("nearest", [False, True])
+def test_the_nearest_world_is_built_where_that_is_wanted(server: Server, tmp_path: Path, nearest: bool) -> None:
+    server.script["planner"] = [text(INSTEAD)]
+    options = Options(settings=SETTINGS, models=models(server, "planner"), confirm=False, nearest=nearest)
+    done = generate(SHATTERS, tmp_path / "runs", options)
+    kept = Kept(done.run.path)
+    if not nearest:
+        assert done.verdict is None
+        assert kept.facts["status"] == "not approved"
+        assert kept.facts["summary"] == "it would stand in for a ball that shatters: bodies are rigid"
+        return
+    assert done.verdict is not None
+    assert (done.verdict.status, done.verdict.not_checked) == (
+        "accepted", ["'shatters': the world stands in for it"],
+    )  # fmt: skip
+    said = "not checked: 'shatters'. It stands in for a ball that shatters: bodies are rigid."
+    assert done.verdict.summary.endswith(said)
+    page = (kept.folder / "report.html").read_text()
+    assert "This world stands in for what cannot be simulated" in page
+
+
+def test_a_world_of_which_nothing_asks_what_happens_is_blocked(server: Server, tmp_path: Path) -> None:
+    """Its checks pass, and no patch can show what no objective asks for: no coder is asked."""
+    clauses = [{"words": "A thrown ball", "by": ["ball.velocity"]}, {"words": "half a metre", "by": [0]}]
+    plan = read_plan(answer(simulation=LONGER, clauses=clauses), PROMPT)
+    options = Options(settings=SETTINGS, models=models(server, "coder"), confirm=False)
+    done = generate(PROMPT, tmp_path / "runs", options, plan=plan)
+    assert done.verdict is not None
+    assert done.verdict.status == "blocked"
+    assert done.verdict.summary.startswith("Blocked: nothing asks for 'flies'; all ")
+    assert done.verdict.not_checked == ["'flies': no clause has it"]
+    assert server.requests == []
+    assert "Not checked" in (done.run.path / "report.html").read_text()
+
+
+def test_a_plan_without_objectives_is_not_begun(tmp_path: Path) -> None:
+    plan = read_plan(answer(clauses=None), PROMPT).model_copy(update={"objectives": []})
+    with pytest.raises(UserError, match="objectives: none; say what must happen"):
+        generate(PROMPT, tmp_path / "runs", plan=plan)
+    assert not (tmp_path / "runs").exists()
 
 
 def test_a_sentence_can_be_tried_afresh(server: Server, tmp_path: Path) -> None:

@@ -71,7 +71,9 @@ class Crew:
         if self.has("reviewer"):
             try:
                 seen = reviewer.review(self.desk, plan, tried.folder, plan_lines(plan))
-                tried.review, tried.seen = seen.text, [one.what for one in seen.differences]
+                unshown = seen.unshown(plan)
+                tried.review = "\n".join([seen.text, *unshown])
+                tried.seen = [*(one.what for one in seen.differences), *unshown]
             except ModelError as error:
                 self.notes.append(f"iteration {tried.number} was reviewed by facts alone: {error}")
         nobody = ["Nobody looked at the pictures; the renderer's facts:", *reviewer.facts(tried.folder)]
@@ -81,16 +83,18 @@ class Crew:
     def judge(self, tried: Attempt, plan: Plan, undone: Sequence[Attempt] = ()) -> None:
         """Let the judge's model name what to mend, or object. Checks that failed stay failed.
 
-        Where every check passed and a reviewer saw no difference there is nothing to ask, nor where no check failed and
-        one crashed.
+        It is asked of a world without a fault, too: no check knows whether that is what the prompt asks for. Where no
+        check failed and one crashed there is nothing to ask.
 
         Args:
             tried: What is judged.
             plan: What it must be.
             undone: Patches of it that made it no better: what was asked for before them did not help.
         """
+        if not self.has("judge") or tried.reached < Reached.PHYSICS or tried.verdict.status == "blocked":
+            return
         settled = tried.verdict.status == "accepted" and tried.seen is not None and not tried.seen
-        if not self.has("judge") or tried.reached < Reached.PHYSICS or settled or tried.verdict.status == "blocked":
+        if settled and not self.desk.answers("judge"):  # a run of before these were asked about
             return
         passed = tried.verdict.status == "accepted"
         found, history = verdict_lines(tried.folder / "verdict.json"), self._history(undone)

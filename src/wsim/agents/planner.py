@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from wsim.plan.schema import Plan
 
 ASSETS = 6  # of the catalogue that are offered
+REASON = 400  # characters of why something cannot be simulated
 NO_OBJECTIVE = "plan: objectives: none; say what must happen, so that the judge can hold the world to it"
 HINTS = (
     '{"image": {"hints": {"visible_objects": [str], "scale": str, "support": [str], "layout": [str], '
@@ -42,8 +44,10 @@ def plan_with(desk: Desk, prompt: str, pictures: Sequence[bytes] = (), image: st
         pictures: JPEGs of what it must look like.
         image: Name of the picture's file, for the plan.
 
+    A prompt whose point cannot be simulated has the plan that comes nearest, which says what it stands in for.
+
     Raises:
-        ModelError: If no answer became a plan.
+        ModelError: If no answer became a plan, or nothing comes near.
         BudgetError: If tokens or time ran out.
     """
     request = [f"Prompt: {prompt}"]
@@ -54,8 +58,10 @@ def plan_with(desk: Desk, prompt: str, pictures: Sequence[bytes] = (), image: st
     request += [_catalogue(prompt), robots_for(prompt)]
     kept: list[Plan] = []  # sound but for its clauses, for which a model is asked once
 
-    def read(text: str) -> Plan:
-        plan = read_plan(object_in(text), prompt, known)
+    def read(text: str) -> Plan | Cannot:
+        plan = _read(object_in(text), prompt, known)
+        if isinstance(plan, Cannot):
+            return plan
         lacks = clauses_lacking(plan)
         if lacks and not kept and desk.answers("planner"):
             kept.append(plan)
@@ -63,11 +69,35 @@ def plan_with(desk: Desk, prompt: str, pictures: Sequence[bytes] = (), image: st
         return _with_clauses(plan) if kept else plan
 
     try:
-        return desk.ask("planner", "\n\n".join(request), read, pictures=pictures)
+        found = desk.ask("planner", "\n\n".join(request), read, pictures=pictures)
     except ModelError:
         if not kept:
             raise
         return _with_clauses(kept[0])
+    if isinstance(found, Cannot):
+        raise ModelError("cannot", found.why, "planner")
+    return found
+
+
+@dataclass(frozen=True)
+class Cannot:
+    """The planner's word that wsim has nothing like what is asked."""
+
+    why: str
+
+
+def _read(answer: dict[str, Any], prompt: str, picture: dict[str, str]) -> Plan | Cannot:
+    """A plan; or the one that comes nearest; or why there is none."""
+    if "cannot" not in answer:
+        return read_plan(answer, prompt, picture)
+    why = " ".join(str(answer["cannot"] or "").split())[:REASON]
+    if not why:
+        raise UnusableError('cannot: say what cannot be simulated, and why, or leave "cannot" out')
+    if answer.get("nearest") is None:
+        return Cannot(why)
+    if not isinstance(answer["nearest"], dict):
+        raise UnusableError("nearest: it is a whole plan, or null where nothing comes near")
+    return read_plan(answer["nearest"] | {"stands_in_for": why}, prompt, picture)
 
 
 def _with_clauses(plan: Plan) -> Plan:
@@ -87,6 +117,8 @@ def clauses_lacking(plan: Plan) -> str:
         return f"plan: clauses: none; tie the words of the prompt to what shows them: {listed}"
     wrong = [f"clauses: {clause.words!r} is not in the prompt as it stands" for clause, at in spans(plan) if not at]
     silent = missing(plan)
+    if any(gap.demand.kind == "beyond" for gap in silent):
+        wrong.append('where that is the point, answer {"cannot": what and why, "nearest": the nearest plan or null}')
     if silent:
         wrong.append(
             "clauses: " + "; ".join(gap.line for gap in silent) + "; tie each to an objective or a property that shows "

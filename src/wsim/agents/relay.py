@@ -85,6 +85,7 @@ class Relay(WrapperModel):
         ledger: Ledger,
         replay: Replay | None = None,
         sleep: Callable[[float], Any] = asyncio.sleep,
+        *,
         fresh: bool = False,
     ) -> None:
         super().__init__(wrapped if wrapped is not None else _absent())

@@ -150,6 +150,9 @@ def _generate(prompt: str, options: Options, runs: Path, path: Path | None, answ
             return True
         with progress.aside():
             show_plan(plan)
+            if yes and plan.stands_in_for and not options.nearest:
+                console.print("what is asked cannot be simulated; --nearest builds this world in its place")
+                return False
             return yes or typer.confirm("build it?")
 
     check_base(runs)

@@ -25,7 +25,7 @@ def generate(
     prompt: str,
     runs: Path = Path("runs"),
     options: Options | None = None,
-    approve: Callable[[Plan], bool] = lambda plan: True,
+    approve: Callable[[Plan], bool] | None = None,
     plan: Plan | None = None,
     progress: Progress = silent,
 ) -> Generated:
@@ -35,7 +35,8 @@ def generate(
         prompt: What the world must be.
         runs: Where run folders go.
         options: Models, budget, device, limits.
-        approve: Shown the plan before anything is built, and one that was changed on the way before it is.
+        approve: Shown the plan before anything is built, and one that was changed on the way before it is;
+            without it every plan is built but one that stands in for what cannot be simulated, unless options say so.
         plan: A plan to use as it is, in place of the planner's.
         progress: Told how far it is.
 
@@ -44,6 +45,8 @@ def generate(
         UserError: If a model cannot be reached by its name, or the picture is none; nothing is left behind.
     """
     options, phases = options or Options(), Phases()
+    nearest = options.nearest
+    approve = approve or (lambda plan: nearest or plan.stands_in_for is None)
     if options.replay is None:
         reach(options.models)
     picture = picture_of(options)
@@ -57,7 +60,8 @@ def generate(
         with phases.phase("plan"):
             plan = keep_plan(run, crew, prompt, plan, picture)  # prompt → plan
         if not approve(plan):
-            run.record(status="not approved", **crew.facts())
+            why = f"it would stand in for {plan.stands_in_for}" if plan.stands_in_for else ""
+            run.record(status="not approved", summary=why, **crew.facts())
             return Generated(run, plan, None, None)
         with phases.phase("try"):
             making = Making(run, crew, plan, options, phases=phases, approve=approve)

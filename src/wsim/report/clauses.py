@@ -10,6 +10,7 @@ from wsim.report.asked import sentence_of
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan
+    from wsim.runs.records import ClauseSeen, Review
 
 
 @dataclass(frozen=True)
@@ -31,3 +32,11 @@ def make_clauses(plan: Plan | None) -> Clauses | None:
         shown += [f"{name}: {field.replace('_', ' ')}" if field else name for name, field in clause.things]
         rows += [(clause.words, shown)] if shown else []
     return Clauses(rows, not_checked(plan), plan.stands_in_for or "")
+
+
+def make_seen(plan: Plan | None, review: Review | None) -> list[tuple[str, ClauseSeen]]:
+    """(words, what a reviewer says) of each clause that it was asked about."""
+    if plan is None or review is None:
+        return []
+    known = dict(enumerate(plan.clauses, start=1))
+    return [(known[each.clause].words, each) for each in review.review.clauses if each.clause in known]

@@ -16,7 +16,7 @@ from wsim.report import text
 from wsim.report.asked import sentence_of
 from wsim.report.attempts import make_attempts
 from wsim.report.chart import Chart
-from wsim.report.clauses import make_clauses
+from wsim.report.clauses import make_clauses, make_seen
 from wsim.report.contents import RunContents, gather
 from wsim.report.cost import make_cost
 from wsim.report.diff import Diff, difference, make_diff
@@ -135,6 +135,7 @@ def context(contents: RunContents, most_video_bytes: int) -> dict[str, Any]:
         "plan": contents.plan,
         "objectives": _objectives(contents),
         "clauses": make_clauses(contents.plan),
+        "seen_clauses": make_seen(contents.plan, shown.review if shown else None),
         "replans": contents.loop.replans,
         "plan_diff": make_diff(contents.plan_diff) if contents.plan_diff else None,
         "source": _source(contents, failed),

@@ -88,6 +88,14 @@ class Difference(BaseModel):
     severity: str = ""
 
 
+class ClauseSeen(BaseModel):
+    """Whether the pictures show a clause of the prompt, by its number from 1."""
+
+    clause: int = 0
+    shown: str = ""  # "yes", "no" or "cannot be seen"
+    why: str = ""
+
+
 class Seen(BaseModel):
     """A reviewer's words; or, without a model, the facts of the shape-index images alone."""
 
@@ -97,6 +105,7 @@ class Seen(BaseModel):
     motion: str = ""
     contacts: str = ""
     differences: list[Difference] = Field(default_factory=list)
+    clauses: list[ClauseSeen] = Field(default_factory=list)
     facts: list[str] = Field(default_factory=list)
 
     @property
