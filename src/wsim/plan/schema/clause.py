@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from pydantic import Field, model_validator
 
 from wsim.plan.schema.base import Sparse, Text
-
-if TYPE_CHECKING:
-    from wsim.plan.schema.draft import Draft
 
 # What of an object, and of a joint, the judge holds the world to, where the plan states it.
 OF_OBJECTS = (
@@ -55,20 +51,3 @@ class Clause(Sparse):
         """(name, property) of what else does; the property is empty where the thing itself is meant."""
         named = [each for each in self.by or [] if isinstance(each, str)]
         return [(name, field) for name, _, field in (each.partition(".") for each in named)]
-
-
-def clause_problems(plan: Draft) -> Iterator[str]:
-    """What a clause names and the plan has not."""
-    objects, joints = {item.name for item in plan.objects}, {joint.name for joint in plan.joints}
-    for i, clause in enumerate(plan.clauses):
-        for number in clause.objectives:
-            if number >= len(plan.objectives):
-                yield (
-                    f"clauses.{i}.by: no objective {number}; the plan has {len(plan.objectives)}, and they count from 0"
-                )
-        for name, field in clause.things:
-            fields = OF_OBJECTS if name in objects else OF_JOINTS if name in joints else ("duration",)
-            if name not in objects | joints | {WHOLE}:
-                yield f"clauses.{i}.by: no object or joint {name!r}; name one, or an objective by its number"
-            elif field and field not in fields:
-                yield f"clauses.{i}.by: {name} has no {field!r} that is checked; it has {', '.join(fields)}"
