@@ -10,6 +10,7 @@ from pydantic import Field
 
 from wsim.errors import UserError
 from wsim.plan.asked.covered import not_checked
+from wsim.plan.feasible.plan import refuse_impossible
 from wsim.plan.store import load, save
 from wsim.plan.unheeded import unheeded
 from wsim.tools.base import Arguments, Result, Tool, Workspace
@@ -62,6 +63,7 @@ def write_plan(workspace: Workspace, asked: WritePlan) -> Result:
     side.write_bytes(text.encode("utf-8", "surrogatepass"))  # what is no text, the reader says
     try:
         plan = load(side)
+        refuse_impossible(plan, side)
     except UserError as error:
         return Result(f"not written: {str(error).removeprefix(f'{side}: ')}", ok=False)
     finally:
