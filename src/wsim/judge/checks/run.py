@@ -175,7 +175,8 @@ class CheckPlanObjects(Check):
         everything = {"/".join(prim.split("/")[:3]) for prims in has.values() for prim in prims}
         found = []
         for item in evidence.plan.objects:
-            kind = item.role if item.role in ("container", "fluid") else item.state
+            # A bucket of the catalogue is a container, too: what can be in it is its objectives' affair.
+            kind = "container" if item.primitive == "tank" else "fluid" if item.role == "fluid" else item.state
             missing = [evidence.prim(name) for name in item.prims if evidence.prim(name) not in everything]
             prim = missing[0] if missing else evidence.prim(item.prims[0])
             if missing:
