@@ -192,7 +192,8 @@ class CheckPlanObjects(Check):
             elif item.primitive == "robot" and not _linked(evidence, prim):
                 found.append(self.failed(f"{prim} has no links that joints hold together, as a robot has", prim=prim))
         planned = {evidence.prim(name) for item in evidence.plan.objects for name in item.prims}
-        for prim in sorted(everything - planned):
+        links = {prim for prim in everything for cord in evidence.plan.cords if cord.owns(prim.rpartition("/")[2])}
+        for prim in sorted(everything - planned - links):
             message = f"{prim} is in the world, but not in the plan"
             found.append(self.failed(message, prim=prim))
         return found or [self.passed(f"The world has the plan's {len(evidence.plan.objects)} objects and no others")]

@@ -18,6 +18,7 @@ from wsim.plan.schema.constructions import (
     Proxy,
     RoadLayer,
 )
+from wsim.plan.schema.cords import Around, Cord
 from wsim.plan.schema.draft import (
     Assumption,
     AssumptionKind,
@@ -51,12 +52,14 @@ __all__ = [
     "Actuation",
     "ArcPlan",
     "AreaPlan",
+    "Around",
     "Assumption",
     "AssumptionKind",
     "BrakePlan",
     "CameraPlan",
     "Clearance",
     "Contact",
+    "Cord",
     "External",
     "FromAsset",
     "FromRobot",

@@ -9,6 +9,7 @@ from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, mod
 from wsim.defaults import DURATION, FRAME_RATE
 from wsim.limits import NO_BOUND
 from wsim.plan.schema.base import Name, NotNegative, Number, Positive, Share, Sparse, Strict, Text, Vec3, Word
+from wsim.plan.schema.cords import Cord
 from wsim.plan.schema.formula import Formula
 from wsim.plan.schema.objects import PlanObject
 
@@ -233,6 +234,7 @@ class Draft(Strict):
     image: ReferenceImage | None = None
     objects: list[PlanObject] = Field(max_length=10_000)
     joints: list[Joint] = Field(default_factory=list, max_length=10_000)
+    cords: list[Cord] = Field(default_factory=list, max_length=1000)
     contacts: list[Contact] = Field(default_factory=list, max_length=10_000)
     cameras: list[CameraPlan] = Field(default_factory=list, max_length=100)
     sensors: list[SensorPlan] = Field(default_factory=list, max_length=1000)
@@ -244,8 +246,8 @@ class Draft(Strict):
 
     @model_serializer(mode="wrap")
     def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Without `contacts` where there are none, so that a plan without them reads as it always did."""
-        return {name: value for name, value in write(self).items() if name != "contacts" or value}
+        """Without `contacts` and `cords` where there are none, so that a plan without them reads as it always did."""
+        return {name: value for name, value in write(self).items() if name not in ("contacts", "cords") or value}
 
     def object(self, name: str) -> PlanObject:
         """The object of that name; KeyError naming the known ones."""
