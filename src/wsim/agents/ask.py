@@ -74,11 +74,13 @@ class Desk:
         """
         # a second to load: builtin roles need none
         from pydantic_ai import Agent, BinaryContent, ModelRetry, TextOutput
+        from pydantic_ai.capabilities import ProcessHistory  # a second to load: builtin roles need none
 
         # a second to load: builtin roles need none
         from pydantic_ai.exceptions import ContentFilterError, UnexpectedModelBehavior, UsageLimitExceeded
         from pydantic_ai.usage import UsageLimits  # a second to load: builtin roles need none
 
+        from wsim.agents.history import shortened
         from wsim.agents.relay import Relay
 
         self.ledger.check()
@@ -103,7 +105,9 @@ class Desk:
             instructions=instructions(role),
             tools=[_offered(tool, workspace, called) for tool in tools if workspace is not None],
             retries={"output": RETRIES, "tools": RETRIES},
-            model_settings={"max_retries": 0, "parallel_tool_calls": True},
+            capabilities=[ProcessHistory(shortened)],
+            # a provider that keeps the beginning of a conversation takes a tenth for it, or less
+            model_settings={"max_retries": 0, "parallel_tool_calls": True, "cache": True},
         )
         content: Any = [request, *(BinaryContent(picture, media_type="image/jpeg") for picture in pictures)]
         limits = UsageLimits(request_limit=RETRIES + ROUNDS + 1)

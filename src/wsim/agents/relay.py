@@ -155,9 +155,10 @@ class Relay(WrapperModel):
         usage = {"input_tokens": response.usage.input_tokens, "output_tokens": response.usage.output_tokens}
         if not any(usage.values()):  # a server that does not count
             usage = {"input_tokens": _tokens(request.messages, request.tools), "output_tokens": _tokens(reply)}
+        if response.usage.cache_read_tokens:
+            usage["cache_read_tokens"] = response.usage.cache_read_tokens
         account.requests += 1
-        account.input_tokens += usage["input_tokens"]
-        account.output_tokens += usage["output_tokens"]
+        account.charge(usage)
         account.seconds += seconds
         price = _price(response)
         if price is not None:
@@ -178,8 +179,7 @@ class Relay(WrapperModel):
             if exchange.reply is not None:
                 account.cached += exchange.cached
                 account.requests += not exchange.cached
-                account.input_tokens += exchange.usage.get("input_tokens", 0)
-                account.output_tokens += exchange.usage.get("output_tokens", 0)
+                account.charge(exchange.usage)
                 return response_of(exchange.reply, exchange.model, exchange.usage)
             account.failed += 1
             error = exchange.error or {}

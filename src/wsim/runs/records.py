@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from pydantic import BaseModel, Field
@@ -40,8 +41,14 @@ class Account(BaseModel):
     failed: int = 0
     input_tokens: int = 0
     output_tokens: int = 0
+    cache_read_tokens: int = 0  # of those of the input, what the provider had kept
     seconds: float = 0.0
     dollars: float | None = None  # None: no price is known
+
+    def charge(self, usage: Mapping[str, int]) -> None:
+        """Add the tokens of a reply."""
+        for name in ("input_tokens", "output_tokens", "cache_read_tokens"):
+            setattr(self, name, getattr(self, name) + usage.get(name, 0))
 
 
 class Usage(BaseModel):

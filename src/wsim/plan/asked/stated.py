@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from wsim.plan.layout.boxes import rotation
-from wsim.plan.schema.clause import WHOLE
+from wsim.plan.schema.clause import OF_CORDS, WHOLE
 
 if TYPE_CHECKING:
     from wsim.plan.asked.demands import Demand
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 ROUNDING = 0.05  # share: "about half a metre" is planned as 0.48 m
 FIELDS = {  # by unit: where a number of it may stand in an object or a joint that is named without a property
-    "m": ("size", "limits", "anchor"), "kg": ("mass",), "kg/m^3": ("density",),
+    "m": ("size", "limits", "anchor", "length"), "kg": ("mass",), "kg/m^3": ("density",),
     "m/s": ("velocity", "surface_velocity", "drive"),
     "deg/s": ("spin", "drive"), "deg": ("limits", "drive", "direction"), "N": ("drive",), "s": ("duration",),
 }  # fmt: skip
@@ -79,6 +79,9 @@ def values(plan: Plan, name: str, field: str) -> Iterator[float]:
     for joint in plan.joints:
         if joint.name == name:
             yield from _of_joint(joint, field)
+    for cord in plan.cords:
+        if cord.name == name and field in OF_CORDS:
+            yield from (value for value in (getattr(cord, field),) if value is not None)
 
 
 def _of_object(plan: Plan, item: PlanObject, field: str) -> Iterator[float]:

@@ -19,6 +19,7 @@ from wsim.plan.schema.constructions import (
     Proxy,
     RoadLayer,
 )
+from wsim.plan.schema.cords import Around, Cord
 from wsim.plan.schema.draft import (
     Assumption,
     AssumptionKind,
@@ -52,6 +53,7 @@ __all__ = [
     "Actuation",
     "ArcPlan",
     "AreaPlan",
+    "Around",
     "Assumption",
     "AssumptionKind",
     "BrakePlan",
@@ -59,6 +61,7 @@ __all__ = [
     "Clause",
     "Clearance",
     "Contact",
+    "Cord",
     "External",
     "FromAsset",
     "FromRobot",

@@ -10,6 +10,7 @@ from wsim.defaults import DURATION, FRAME_RATE
 from wsim.limits import NO_BOUND
 from wsim.plan.schema.base import Name, NotNegative, Number, Positive, Share, Sparse, Strict, Text, Vec3, Word
 from wsim.plan.schema.clause import Clause
+from wsim.plan.schema.cords import Cord
 from wsim.plan.schema.formula import Formula
 from wsim.plan.schema.objects import PlanObject
 
@@ -225,7 +226,7 @@ class Assumption(Sparse):
         return self
 
 
-_UNWRITTEN = ("contacts", "clauses", "stands_in_for")  # where they are empty
+_UNWRITTEN = ("contacts", "cords", "clauses", "stands_in_for")  # where they are empty
 
 
 class Draft(Strict):
@@ -237,6 +238,7 @@ class Draft(Strict):
     image: ReferenceImage | None = None
     objects: list[PlanObject] = Field(max_length=10_000)
     joints: list[Joint] = Field(default_factory=list, max_length=10_000)
+    cords: list[Cord] = Field(default_factory=list, max_length=1000)
     contacts: list[Contact] = Field(default_factory=list, max_length=10_000)
     cameras: list[CameraPlan] = Field(default_factory=list, max_length=100)
     sensors: list[SensorPlan] = Field(default_factory=list, max_length=1000)

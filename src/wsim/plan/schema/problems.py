@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, get_args
 
 from wsim.limits import MAX_DURATION, MAX_FRAME_RATE, MAX_FRICTION, bad_stops, bad_time_step
 from wsim.plan.schema.clauses import clause_problems
+from wsim.plan.schema.cords import cord_problems
 from wsim.plan.schema.draft import KindOfTwo
 from wsim.plan.schema.land import land_problems
 from wsim.plan.schema.supports import support_problems
@@ -30,6 +31,7 @@ def problems(plan: Draft) -> list[str]:
         *support_problems(plan),
         *_groups(plan),
         *_joints(plan),
+        *cord_problems(plan),
         *_contacts(plan),
         *_actuation(plan),
         *_by_time(plan),
@@ -63,6 +65,7 @@ def _names(plan: Draft) -> Iterator[str]:
         "cameras": [camera.name for camera in plan.cameras],
         "sensors": [sensor.name for sensor in plan.sensors],
         "joints": [joint.name for joint in plan.joints],
+        "cords": [cord.name for cord in plan.cords],
     }
     taken: dict[str, str] = {}
     for kind, names in named.items():
