@@ -61,6 +61,10 @@ WRONG: dict[str, tuple[dict[str, Any], str]] = {
         {"objects": [BLOCK], "objectives": [formula("fills_to(water, 0.2 m)", "water")]},
         r"fills_to: water is in no tank and has no surface; put it in one .* fills\(water, vessel\)",
     ),
+    "inside what is solid": (
+        {"objects": [A, BLOCK], "objectives": [{"kind": "fills", "object": "water", "ref": "box"}]},
+        r"objectives\.0: fills box, which is a solid box and has no hollow; name a tank, or a vessel of the catalogue",
+    ),
     "a size that the surface overrides": (
         {"objects": [TANK, {**WATER, "size": [0.5, 1, 0.6], "relations": IN_TANK}], "objectives": [INSIDE]},
         r"objects\.2\.construction\.size: 0\.5 x 1 x 0\.6 m of water, which FREE-SURFACE-AT and tank make 1 x 1 x 0\.6",
@@ -138,6 +142,10 @@ RIGHT: dict[str, dict[str, Any]] = {
     },
     "pushed off what it is on": {
         "objects": [box("box", [0, 0, 0.9]), TABLE], "objectives": [RESTS], "prompt": "A box is pushed off a table.",
+    },
+    "what drops into a tank": {
+        "objects": [TANK, box("box", [0, 0, 2])],
+        "objectives": [{"kind": "stays_inside", "object": "box", "ref": "tank"}],
     },
     "water in its tank": {"objects": [TANK, {**WATER, "relations": IN_TANK}], "objectives": [INSIDE]},
     "water that falls": {"objects": [BLOCK], "objectives": [formula("conserves(mass, water)", "water")]},

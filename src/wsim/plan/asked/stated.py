@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 ROUNDING = 0.05  # share: "about half a metre" is planned as 0.48 m
 FIELDS = {  # by unit: where a number of it may stand in an object or a joint that is named without a property
     "m": ("size", "limits", "anchor", "length"), "kg": ("mass",), "kg/m^3": ("density",),
-    "m/s": ("velocity", "surface_velocity", "drive"),
+    "m/s": ("velocity", "surface_velocity", "drive", "actuation"),
     "deg/s": ("spin", "drive"), "deg": ("limits", "drive", "direction"), "N": ("drive",), "s": ("duration",),
 }  # fmt: skip
 OPEN = ("place", "level", "actuation")  # a stated distance may be the difference of two places, or one of many
@@ -91,6 +91,8 @@ def _of_object(plan: Plan, item: PlanObject, field: str) -> Iterator[float]:
     if field in vectors:
         vector = vectors[field] or (0.0, 0.0, 0.0)
         yield from (*vector, math.hypot(*vector), math.hypot(*vector[:2]))
+    elif field == "actuation":
+        yield from (each.speed for each in item.registration.actuation if each.speed is not None)
     elif field == "direction" and any(item.velocity):
         x, y, z = item.velocity
         yield from (math.degrees(math.atan2(z, math.hypot(x, y))), math.degrees(math.atan2(y, x)))

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 _BLOWS = "collides_with touches pushes topples stops_before"
 _FALLS = """collides_with rests_on falls_freely drops topples submerged sinks floats flies bounces_to counts
-contained_in tilts tilts_to stays_on"""
+contained_in stays_inside tilts tilts_to stays_on"""
 _TURNS = "spin_between own_spin_between turned_between rolls"
 _OVER = "topples upright drops tilt_between tilts tilts_to"
 _STOPS = "settles speed_between stops_before stays_within rests_on"

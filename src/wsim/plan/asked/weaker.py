@@ -34,8 +34,13 @@ def weakened(old: Plan, new: Plan) -> list[str]:
 def _gone(old: Plan, new: Plan) -> Iterator[str]:
     named = {name for clause in old.clauses for name, _ in clause.things}
     named |= {name for each in old.objectives for name in (each.object, each.ref) if name is not None}
-    there = {item.name for item in new.objects} | {joint.name for joint in new.joints}
-    yield from (f"{name} is gone" for name in sorted({item.name for item in old.objects} & named - there))
+    known, there = (_names(plan) for plan in (old, new))
+    yield from (f"{name} is gone" for name in sorted(known & named - there))
+
+
+def _names(plan: Plan) -> set[str]:
+    named = (*plan.objects, *plan.joints, *plan.cords)
+    return {str(getattr(each, "name", "")) for each in named}
 
 
 def _unasked(old: Plan, new: Plan) -> Iterator[str]:

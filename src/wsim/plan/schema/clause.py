@@ -25,7 +25,7 @@ class Clause(Sparse):
 
     Attributes:
         words: As they stand in the prompt, one after another.
-        by: Numbers of objectives, counted from 0; names of objects, joints and cords, of one property with a dot: "puck.mass".
+        by: Numbers of objectives, counted from 0; names of objects, joints, cords, a property with a dot: "puck.mass".
         unchecked: Why nothing shows that they came true; given in place of `by`.
     """
 

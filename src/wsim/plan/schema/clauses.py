@@ -22,7 +22,7 @@ def clause_problems(plan: Draft) -> Iterator[str]:
                     f"clauses.{i}.by: no objective {number}; the plan has {len(plan.objectives)}, and they count from 0"
                 )
         for name, field in clause.things:
-            fields = OF_OBJECTS if name in objects else OF_JOINTS if name in joints else OF_CORDS
+            fields: tuple[str, ...] = OF_OBJECTS if name in objects else OF_JOINTS if name in joints else OF_CORDS
             fields = fields if name != WHOLE else ("duration",)
             if name not in objects | joints | cords | {WHOLE}:
                 yield f"clauses.{i}.by: no object, joint or cord {name!r}; name one, or an objective by its number"
