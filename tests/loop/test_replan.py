@@ -149,13 +149,14 @@ def test_it_goes_back_once(server: Server, loop: Callable[..., Generated]) -> No
     assert kept.facts["cause"].startswith("the coder's model: gave up: ")
 
 
-def test_a_person_may_say_no(server: Server, loop: Callable[..., Generated]) -> None:
+def test_a_person_may_say_no(server: Server, loop: Callable[..., Generated], tmp_path: Path) -> None:
     server.script |= {"coder": [CANNOT], "planner": [text(mended())]}
     kept = Kept(loop(approve=lambda plan: plan.simulation.duration == 0.2).run.path)
     assert [(row["kept"], row["approved"]) for row in kept.facts["replans"]] == [(False, False)]
     assert kept.numbers == ["01"]
     assert kept.facts["status"] == "blocked"
     assert not (kept.folder / "plan-1.json").exists()
+    assert replay(kept.folder, tmp_path / "again").generated.run.facts()["replans"] == kept.facts["replans"]
 
 
 def test_an_objection_traded_for_a_smaller_one_is_kept(server: Server, tmp_path: Path) -> None:

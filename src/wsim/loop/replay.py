@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -73,7 +74,10 @@ def replay(recorded: Path, runs: Path, progress: Progress = silent, device: str 
     given = not answers.left or answers.left[0].role != "planner"
     first = next((path for name in (FIRST_PLAN, "plan.json") if (path := recorded / name).is_file()), None)
     plan = load(first) if given and first is not None else None
-    generated = generate(facts["prompt"], runs, options, plan=plan, progress=progress)
+    agreed = deque([True, *(bool(row.get("approved")) for row in facts.get("replans", []))])
+    generated = generate(
+        facts["prompt"], runs, options, lambda plan: agreed.popleft() if agreed else True, plan, progress
+    )
     if answers.left:
         roles = ", ".join(exchange.role for exchange in answers.left)
         answers.divergences.append(f"{len(answers.left)} recorded exchanges were not asked for: {roles}")

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from tests.agents.flies import answer
+from tests.agents.flies import BALL, GROUND, MOVES, answer
 from wsim.agents.planner import read_plan
 from wsim.errors import UserError
 from wsim.plan.asked.covered import missing, not_checked, told, unasked
@@ -100,3 +100,29 @@ def test_the_second_of_two_like_words_is_another_place() -> None:
     first = {"words": "flies", "by": [0]}
     assert [gap.demand.first for gap in missing(plan([first], prompt))] == [5]
     assert missing(plan([first, first], prompt)) == []
+
+
+def test_a_count_is_answered_by_as_many_things() -> None:
+    prompt = "Three balls are thrown and fly half a metre."
+    balls = [{**BALL, "name": f"ball_{k}", "position": [0, k, 2]} for k in range(3)]
+    rest = [{"words": "fly half a metre", "by": [0]}, {"words": "thrown", "by": ["ball_0.velocity"]}]
+
+    def counted(*by: Any) -> list[str]:
+        objectives = [{**MOVES, "object": "ball_0"}]
+        clauses = [{"words": "Three balls", "by": list(by)}, *rest]
+        return [gap.line for gap in missing(plan(clauses, prompt, objects=[GROUND, *balls], objectives=objectives))]
+
+    assert counted("ball_0", "ball_1", "ball_2") == []
+    assert counted("ball_0", "ball_1") == ["'Three': fewer things are named for it"]
+    assert counted("ball_0") == []  # what is one thing of the plan may be many
+
+
+def test_a_blow_is_asked_for_as_such() -> None:
+    prompt = "A ball hits the ground."
+    words = [{"words": "hits", "by": [0]}]
+    assert [gap.line for gap in missing(plan(words, prompt))] == [
+        "'hits': it is a blow, and no objective that is named for it asks for one: collides_with, touches"
+    ]
+    for asked in ({"kind": "collides_with"}, {"kind": "rests_on"}):
+        objectives = [{**asked, "object": "ball", "ref": "ground"}]
+        assert missing(plan(words, prompt, objectives=objectives)) == []

@@ -8,12 +8,14 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from wsim.plan.asked.demands import REQUIRED, Demand, demands, tokens
+from wsim.plan.asked.shown import is_blow_shown
 from wsim.plan.asked.stated import asks, states
 from wsim.plan.asked.vocabulary import CAUSES
 
 if TYPE_CHECKING:
-    from wsim.plan.schema import Clause, Plan
+    from wsim.plan.schema import Clause, Objective, Plan
 
+BLOW = "it is a blow, and no objective that is named for it asks for one: collides_with, touches"
 STARTS = ("velocity", "spin", "surface_velocity", "drive", "actuation")  # what sets a thing going
 
 
@@ -144,12 +146,16 @@ def _gap(demand: Demand, clauses: Sequence[Clause], plan: Plan) -> Gap | None:
         alone = [clause for clause in tied if not _more_than(demand, clause)]
         return None if alone else Gap(demand, next(iter(reasons), "nothing measures it"), said=bool(reasons))
     if any(_shows(clause, demand, plan) for clause in tied):
-        return None
+        return None if is_blow_shown(demand.base, _asked(tied, plan)) else Gap(demand, BLOW)
     if reasons:
         return Gap(demand, reasons[0], said=True)
     if not clauses:
         return Gap(demand, "no clause has it")
     return Gap(demand, _lacks(demand))
+
+
+def _asked(clauses: Sequence[Clause], plan: Plan) -> list[Objective]:
+    return [plan.objectives[number] for clause in clauses for number in clause.objectives]
 
 
 def _more_than(manner: Demand, clause: Clause) -> bool:
@@ -158,7 +164,9 @@ def _more_than(manner: Demand, clause: Clause) -> bool:
 
 
 def _shows(clause: Clause, demand: Demand, plan: Plan) -> bool:
-    if demand.kind == "state" or (demand.kind == "number" and not demand.unit):  # of a count the things themselves
+    if demand.kind == "number" and not demand.unit:
+        return _counted(clause, demand)
+    if demand.kind == "state":
         return True
     if demand.kind == "number":
         asked = any(asks(plan.objectives[number], demand) for number in clause.objectives)
@@ -168,7 +176,16 @@ def _shows(clause: Clause, demand: Demand, plan: Plan) -> bool:
     return demand.base in CAUSES and any(field in STARTS for _, field in clause.things)
 
 
+def _counted(clause: Clause, demand: Demand) -> bool:
+    """Of a count the things themselves answer, as many as it says; one may be many (a scatter, a robot's legs)."""
+    whole = [name for name, field in clause.things if not field]
+    several = len(whole) > 1 and len(whole) == len(clause.by or [])
+    return not several or demand.value is None or len(whole) >= demand.value
+
+
 def _lacks(demand: Demand) -> str:
+    if demand.kind == "number" and not demand.unit:
+        return "fewer things are named for it"
     if demand.kind == "number":
         return "no objective that is named for it has this value, nor a property, such as puck.velocity"
     return "it happens, and no objective is named for it"

@@ -6,36 +6,14 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from wsim.plan.asked.demands import REQUIRED, Demand, demands, tokens
+from wsim.plan.asked.shown import SHOWN_BY, names_of
 from wsim.plan.asked.stated import FIELDS, asks, close, values
 from wsim.plan.asked.vocabulary import CAUSES
 from wsim.plan.schema.clause import OF_JOINTS, WHOLE, Clause
 
 if TYPE_CHECKING:
-    from wsim.plan.schema import Objective, Plan, PlanObject
+    from wsim.plan.schema import Plan, PlanObject
 
-_BLOWS = "collides_with touches pushes topples stops_before"
-_FALLS = """collides_with rests_on falls_freely drops topples submerged sinks floats flies bounces_to counts
-contained_in stays_inside tilts tilts_to stays_on"""
-_TURNS = "spin_between own_spin_between turned_between rolls"
-_OVER = "topples upright drops tilt_between tilts tilts_to"
-_STOPS = "settles speed_between stops_before stays_within rests_on"
-_SHOW = (  # verbs of one meaning alone, and the kinds of objective and predicates that show it
-    ("float", "floats level_in"),
-    ("sink", "sinks submerged rests_on"),
-    ("swing", "swings turned_between"),
-    ("bounce rebound", "bounces_to climbs_to dies_down collides_with"),
-    ("slide", "slides goes_down gone_between moves"),
-    ("roll", "rolls rolls_down rolls_freely rolls_without_slip"),
-    ("carry", "stays_on moves contained_in"),
-    ("fill", "fills fills_to level_in stays_inside"),
-    ("tilt", "tilts tilts_to tilt_between"),
-    ("hit strike collide crash smash ram bump slam kick slap", _BLOWS),
-    ("fall drop land plunge plummet plop", _FALLS),
-    ("turn spin rotate revolve swivel pivot whirl twirl", _TURNS),
-    ("topple knock tip overturn collapse tumble", _OVER),
-    ("stop halt brake settle park", _STOPS),
-)
-SHOWN_BY = {base: frozenset(names.split()) for verbs, names in _SHOW for base in verbs.split()}
 UNASKED = "no objective of the plan asks for it"
 UNFOUND = "no number that the plan states is this one"
 _WITHOUT_UNIT = ("friction", "restitution", "rolling")
@@ -52,7 +30,7 @@ def tied(plan: Plan) -> Plan:
 
 
 def _clause(plan: Plan, demand: Demand) -> Clause:
-    by: list[int | str] = list(_evidence(plan, demand))
+    by: list[int | str] = [] if demand.kind == "beyond" else list(_evidence(plan, demand))
     if by:
         return Clause(words=demand.text, by=by)
     return Clause(words=demand.text, unchecked=UNFOUND if demand.kind == "number" else UNASKED)
@@ -73,12 +51,6 @@ def _evidence(plan: Plan, demand: Demand) -> Iterator[int | str]:
         yield from (f"{joint.name}.drive" for joint in plan.joints if joint.drive is not None)
     elif not numbers and demand.kind == "state":
         yield from (item.name for item in plan.objects if item.primitive != "ground")
-
-
-def names_of(objective: Objective) -> set[str]:
-    """The kind of an objective, and the predicates of its formula."""
-    nodes = objective.formula.walk() if objective.formula is not None else ()
-    return {objective.kind, *(str(getattr(node, "op", "")) for node in nodes)}
 
 
 def _of_number(plan: Plan, demand: Demand) -> Iterator[int | str]:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from wsim.plan.asked.covered import gaps, spans
 from wsim.plan.asked.demands import REQUIRED, Demand, demands
-from wsim.plan.asked.tied import SHOWN_BY, names_of, tied
+from wsim.plan.asked.shown import SHOWN_BY, names_of
+from wsim.plan.asked.tied import tied
 from wsim.plan.schema.formula import Predicate
 
 if TYPE_CHECKING:
