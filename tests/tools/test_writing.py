@@ -59,7 +59,7 @@ def test_a_long_plan_is_cut_and_says_so(empty: Workspace) -> None:
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (lambda data: data.pop("title"), "title: Field required"),
+        (lambda data: data.pop("title"), "title: it is missing"),
         (lambda data: data["objects"][0].update(role="gizmo"), "objects.0.role"),
         (lambda data: data["objects"][3]["topology"]["relation"][0].update(ref="sea"), "no object 'sea'"),
         (

@@ -37,6 +37,7 @@ PARTS = (
     "clauses.html",
     "iterations.html",
     "models.html",
+    "replans.html",
     "review.html",
 )  # of template.html
 MOST_CARDS = 8
