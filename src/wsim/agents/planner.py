@@ -7,7 +7,8 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from wsim.agents.ask import object_in
+from wsim.agents.ask import UnusableError, object_in
+from wsim.agents.chapters import asked_for, chapters_for, planner_prompt, told
 from wsim.agents.robots import robots_for
 from wsim.assets import search
 from wsim.errors import UserError
@@ -46,8 +47,15 @@ def plan_with(desk: Desk, prompt: str, pictures: Sequence[bytes] = (), image: st
         known = {"path": image, "sha256": sha256(pictures[0]).hexdigest()}
         request.append(f"A reference picture is attached ({image}); fill image.hints from it: {HINTS}")
     request += [_catalogue(prompt), robots_for(prompt)]
+
+    def accept(text: str) -> Plan:
+        answer = object_in(text)
+        if wanted := asked_for(answer):
+            raise UnusableError(told(wanted))
+        return read_plan(answer, prompt, known)
+
     return desk.ask(
-        "planner", "\n\n".join(request), lambda text: read_plan(object_in(text), prompt, known), pictures=pictures
+        "planner", "\n\n".join(request), accept, pictures=pictures, told=planner_prompt(chapters_for(prompt))
     )
 
 
