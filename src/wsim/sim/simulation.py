@@ -25,6 +25,8 @@ from wsim.sim.cameras import CameraRenderer
 from wsim.sim.devices import pick_device, steps_in_c
 from wsim.sim.entering import entered
 from wsim.sim.events import Events
+from wsim.sim.framing.frame import Framing
+from wsim.sim.framing.motion import MotionLog
 from wsim.sim.measure import measure
 from wsim.sim.model import build_batch, build_model
 from wsim.sim.perturb import perturb
@@ -283,6 +285,7 @@ class Simulation:
         review: str | Path | None = None,
         metadata: dict[str, Any] | None = None,
         progress: Progress = silent,
+        named: Sequence[str] = (),
     ) -> SimulationResult:
         """Simulate the stage's duration and record it.
 
@@ -291,10 +294,11 @@ class Simulation:
         Args:
             recording: Path of the `.rrd`.
             video: Path of an MP4 of the first camera; None renders nothing.
-            frames_dir: Folder for a few still pictures of every camera.
+            frames_dir: Folder for a few still pictures of every camera, of the moments when something happens.
             review: JSON file of what those pictures show: each object's share of them.
             metadata: Kept in the recording beside the simulator's own.
             progress: Told after each frame.
+            named: Names of the objects that the run is about, which its cameras are to show; none: what moves.
         """
         started = time.perf_counter()
         frames = round(self.world.duration * self.world.frame_rate)
@@ -309,14 +313,12 @@ class Simulation:
             pictures = None
             if video:
                 with phases.phase("prepare the camera"):
-                    beside = not (self.device.is_cuda or self._replays)
-                    drawn = Pictures(
-                        self.world, self.built, writer, video, frames_dir, review, frames, progress, phases, beside
-                    )
+                    drawn = Pictures(self.world, self.built, writer, video, frames_dir, review, named, progress, phases)
                 pictures = stack.enter_context(drawn)
             writer.log(0.0, "INFO", self._summary())
             events = Events(self.built, self.fluid)
             self.sensors.tell(writer.sample)
+            moved = MotionLog()
             for frame in range(frames + 1):
                 with phases.phase("simulate"):
                     if frame:
@@ -324,11 +326,11 @@ class Simulation:
                     problems = self.problems()
                 measured = measure(self.built, self.state, self.rigid, self.fluid)
                 writer.frame(self.time, measured)
+                moved.add(self.time, measured)
                 for prim, text in events.breakages(measured.scalars):
                     writer.log(self.time, "INFO", text, prim)
                 if pictures and not problems:
-                    with phases.phase("draw"):
-                        pictures.take(frame, self.time, self.state)
+                    pictures.keep(self.time, self.state)
                 progress("simulating", frame, frames)
                 for prim, text in events.departures(self.state):
                     writer.log(self.time, "WARN", text, prim)
@@ -338,9 +340,11 @@ class Simulation:
                     break
             if self.sensors and not problems:
                 self.sensors.ask(self.step_count, self)  # whose turn is at the end
+            motion = moved.motion()
             if pictures:
-                with phases.phase("draw"):
-                    pictures.finish()
+                pictures.draw(motion)
+            elif self.world.cameras:
+                writer.views(Framing(self.world, motion, named).cameras(), motion.time, motion.body_q)
             if problems:
                 writer.close(complete=False, error="; ".join(problems))
         return SimulationResult(
