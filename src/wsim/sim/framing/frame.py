@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.scene.world import Camera
-from wsim.sim.framing.moments import Moment, moments
+from wsim.sim.framing.moments import STILLS, Moment, chosen, moments
 from wsim.sim.framing.motion import Motion
 from wsim.sim.framing.shown import Scenario, Shown, shown
 from wsim.sim.framing.subjects import Subject, subjects
@@ -28,8 +28,7 @@ EVENT, AFTER = 3.0, 0.3  # weights of frames about a moment, and after the last 
 ABOUT = 0.15  # [s] about a moment
 WELL, KEPT = 0.7, 0.75  # of 1, and of the best view's worth: a camera that is worth so much is kept
 SHOWN = 0.9  # of the time: for how long a camera that is kept shows each main subject
-LOOKED_AT = 5  # views whose pictures are looked at, a time, for what hides what
-ROUNDS = 3  # as often, while all that was looked at hides much
+LOOKED_AT = 4  # views whose pictures are looked at, at least, for what hides what
 OWN = 1.1  # what a view from the side that the camera was on is worth, of one from another
 DIGITS = 3
 
@@ -78,7 +77,8 @@ class Framing:
         happens = [moment.frame for moment in self.moments]
         strongest = sorted(self.moments, key=lambda moment: -moment.weight)[: FRAMES // 2]
         evenly = np.linspace(0, len(time) - 1, min(len(time), FRAMES - len(strongest))).astype(int)
-        frames = np.unique([*evenly, *(moment.frame for moment in strongest)])
+        stills = chosen(self.moments, len(time), STILLS)
+        frames = np.unique([*evenly, *stills, *(moment.frame for moment in strongest)])
         weight = np.gradient(time[frames]) if len(frames) > 1 else np.ones(1)
         apart = np.abs(time[frames][:, None] - time[happens][None]).min(axis=1, initial=math.inf)
         self._around = apart <= max(ABOUT, 0.1 * float(time[-1] - time[0]))
@@ -90,7 +90,7 @@ class Framing:
             {prim: points[frames] for prim, points in self.motion.fluids.items()},
         )  # fmt: skip
         thin = [Subject(each.prim, each.points[frames], each.weight, each.main, each.body) for each in found]
-        self._scenario = Scenario(self.world, moved, thin, weight / weight.sum())
+        self._scenario = Scenario(self.world, moved, thin, weight / weight.sum(), np.isin(frames, stills))
 
     def _own(self, lens: Camera) -> list[Camera]:
         assert self._scenario is not None
@@ -137,15 +137,24 @@ class Framing:
         assert self._scenario is not None
         found = [(shown(view, self._scenario), view) for view in tried]
         rated = sorted(((seen.worth(self._scenario), seen, view) for seen, view in found), key=lambda each: -each[0])
-        best = (rated[0][2], rated[0][0] if self._look is None else -1.0)
-        if self._look is not None:
-            for k, (worth, seen, view) in enumerate(rated[: LOOKED_AT * ROUNDS]):
-                if worth <= best[1] or (k and k % LOOKED_AT == 0 and best[1] > KEPT * worth):
-                    break  # those that follow are worth less, hidden or not
+        if self._look is None:
+            return rated[0][2], rated[0][0]
+        best, sides = (rated[0][2], -1.0), set()
+        for worth, seen, view in rated:
+            if worth <= best[1] or (len(sides) >= LOOKED_AT and best[1] > KEPT * worth):
+                break  # those that follow are worth less, hidden or not
+            if _side(view) not in sides:
+                sides.add(_side(view))
                 told = seen.worth(self._scenario, self._hidden(view, seen))
                 if told > best[1]:
                     best = (view, told)
         return best
+
+
+def _side(view: Camera) -> tuple[str | None, ...]:
+    """From where a view looks, whatever it follows."""
+    way = np.subtract(view.eye, view.target)
+    return (view.follows, *(f"{part:.2f}" for part in way / np.linalg.norm(way)))
 
 
 def _rounded(camera: Camera) -> Camera:

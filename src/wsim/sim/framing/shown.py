@@ -34,12 +34,14 @@ class Scenario:
         motion: At those frames.
         subjects: Likewise.
         weight: Of each frame, (F,), 1 together.
+        stills: Which frames stills are taken of, (F,).
     """
 
     world: World
     motion: Motion
     subjects: Sequence[Subject]
     weight: Array
+    stills: Array
 
     @property
     def shares(self) -> Array:
@@ -79,8 +81,11 @@ class Shown:
         """
         size = np.log(np.maximum(self.size, 1e-9) / SPECK) / math.log(LARGE / SPECK)
         value = self.inside * np.clip(size, 0.0, 1.0)
-        each = scenario.weight @ value * (1.0 - np.asarray(hidden))
-        return float(each @ scenario.shares) * (1.0 - MOVING + MOVING * self.motion)
+        there = 1.0 - np.asarray(hidden)
+        main = np.array([subject.main for subject in scenario.subjects])
+        in_stills = self.seen[scenario.stills][:, main].mean() * np.broadcast_to(there, main.shape)[main].mean()
+        each = scenario.weight @ value * there
+        return float(each @ scenario.shares) * float(in_stills) ** 2 * (1.0 - MOVING + MOVING * self.motion)
 
 
 def shown(camera: Camera, scenario: Scenario) -> Shown:
