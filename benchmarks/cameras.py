@@ -150,7 +150,8 @@ def compare(before: Path, after: Path, image: Path | None) -> None:
             f"| {name} | {old.seen:.0%} | {new.seen:.0%} | {old.height:.1%} | {new.height:.1%} "
             f"| {old.hidden:.0%} | {new.hidden:.0%} |"
         )
-    means = [np.mean([(p.seen, p.height, p.hidden) for p in side], axis=0) for side in zip(*[p[1:] for p in pairs])]
+    sides = [[pair[k] for pair in pairs] for k in (1, 2)]
+    means = [np.mean([(one.seen, one.height, one.hidden) for one in side], axis=0) for side in sides]
     (a, b, c), (d, e, f) = means
     print(f"| all | {a:.0%} | {d:.0%} | {b:.1%} | {e:.1%} | {c:.0%} | {f:.0%} |")
     if image is not None:

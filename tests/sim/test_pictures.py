@@ -1,4 +1,4 @@
-"""A run's pictures, drawn when it has ended: each of the state that was then, stills of what happens; they break well."""
+"""A run's pictures, drawn when it has ended: each of the state that was then, and stills of what happens."""
 
 import json
 import threading
@@ -80,7 +80,7 @@ def test_stills_are_of_all_cameras_at_the_same_moments(folder):
     assert [row["time"] for row in told["share_of_picture"] if row["camera"] == "/World/top"] == [
         float(time.removesuffix("s.png")) for time in times
     ]
-    assert set(told["moments"][0]) == {"time", "what"}
+    assert set(told["moments"][0]) == {"time", "what", "weight"}
 
 
 def test_a_run_that_breaks_has_pictures_of_what_went_well(stage, tmp_path):
@@ -139,7 +139,7 @@ def test_nothing_is_drawn_of_no_frames(stage, tmp_path):
     world, built = simulation.world, simulation.built
     with RecordingWriter(tmp_path / "r.rrd", world) as writer:
         files = (tmp_path / "v.mp4", tmp_path / "frames", tmp_path / "review.json")
-        with Pictures(world, built, writer, *files, [], silent, Phases()) as pictures:
+        with Pictures(world, built, writer, *files, [], None, silent, Phases()) as pictures:
             pictures.draw(MotionLog().motion())
     assert not (tmp_path / "v.mp4").exists()
     assert json.loads((tmp_path / "review.json").read_text())["share_of_picture"] == []

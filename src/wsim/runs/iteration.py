@@ -30,7 +30,7 @@ from wsim.runs.verify import Verification
 from wsim.scene.describe import describe
 
 if TYPE_CHECKING:
-    from wsim.plan.schema import Plan
+    from wsim.plan.schema import Objective, Plan
     from wsim.program.sandbox import BuildResult
     from wsim.sim import Simulation, SimulationResult
 
@@ -176,6 +176,7 @@ class Iteration:
                 metadata={"program": self.program.name, "params": self.settings.params | self.settings.draws},
                 progress=self.progress,
                 named=self._asked,
+                words=self._judged if self.settings.caption else None,
             )
         seconds |= result.seconds
         return result
@@ -184,6 +185,16 @@ class Iteration:
         """Draw stills of what was recorded, where no pictures were taken and some are wanted."""
         if self.settings.pictures:
             leave_stills(self.folder, self._asked, self.settings.device, self.progress)
+
+    @property
+    def _judged(self) -> str:
+        """What the world is held to, in a line."""
+        told = [objective.sentence or f"{objective.object} {objective.kind}" for objective in self._objectives]
+        return "; ".join(told)
+
+    @property
+    def _objectives(self) -> list[Objective]:
+        return self.plan.objectives if self.plan else []
 
     @property
     def _asked(self) -> list[str]:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def leave_stills(folder: Path, named: Sequence[str] = (), device: str = "auto", progress: Progress = silent) -> None:
-    """Draw what happened, by a stage and a recording in a folder, into its frames/, and say in review.json what is seen.
+    """Draw what happened, by a folder's stage and recording, into its frames/, and say in review.json what is seen.
 
     Where there is no stage, or stills are there already, nothing is done; nor where the stage breaks the renderer too.
 

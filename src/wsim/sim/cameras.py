@@ -54,13 +54,13 @@ class CameraImage:
 class Style:
     """Light and sky; colours are linear RGB."""
 
-    sun_color: Color = (0.80, 0.75, 0.66)
+    sun_color: Color = (0.92, 0.85, 0.72)
     sun_direction: Color = (-0.45, 0.55, -0.85)  # from the sun into the scene; a distant light of the world goes first
     ambient_up: Color = (0.24, 0.28, 0.34)  # on faces that look up
     ambient_down: Color = (0.12, 0.11, 0.10)  # on faces that look down
-    zenith: Color = (0.13, 0.30, 0.62)
-    horizon: Color = (0.62, 0.71, 0.80)
-    checker_contrast: float = 0.10  # of the ground's pattern; 0 is plain
+    zenith: Color = (0.10, 0.26, 0.60)
+    horizon: Color = (0.55, 0.67, 0.80)
+    checker_contrast: float = 0.13  # of the ground's pattern; 0 is plain
     reflection: float = 1.0  # 0 is none, 1 is Fresnel's
     scatter: float = 1.0  # 0: water and glass only absorb
     shadows: bool = True
@@ -250,7 +250,7 @@ class CameraRenderer:
         look.ambient = wp.vec3(*style.ambient_up)
         look.zenith = wp.vec3(*style.zenith)
         look.horizon = wp.vec3(*style.horizon)
-        look.fog_distance = 22.0 * max(radius, 1e-3)
+        look.fog_distance = 34.0 * max(radius, 1e-3)
         look.checker = 2.0 ** round(np.log2(max(radius, 1e-3) / 2.5))
         look.checker_contrast = style.checker_contrast
         look.reflection = style.reflection

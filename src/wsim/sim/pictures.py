@@ -10,6 +10,7 @@ from collections import deque
 from collections.abc import Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +22,7 @@ from wsim.sim.framing.frame import Framing
 from wsim.sim.framing.hidden import Hidden
 from wsim.sim.framing.moments import STILLS, chosen
 from wsim.sim.kept_states import KeptStates
+from wsim.sim.marks import Marks, caption
 from wsim.sim.seen import ObjectPixels, still_name, write_png
 
 if TYPE_CHECKING:
@@ -49,6 +51,7 @@ class Pictures:
         review: JSON file with those moments, and the share of the picture that each object has in those stills, from
             the shape-index image: what is in frame, whether anyone looks at it or not; None writes none.
         named: Names of the objects that the run is about; none: what moves.
+        words: A line below the video's pictures, after their time; None: there is none.
         progress: Told about compilation, and how many frames are drawn.
         phases: Gets the time of drawing and encoding.
     """
@@ -62,11 +65,12 @@ class Pictures:
         frames_dir: str | Path | None,
         review: str | Path | None,
         named: Sequence[str],
+        words: str | None,
         progress: Progress,
         phases: Phases,
     ) -> None:
         self.world, self.built, self.writer = world, built, writer
-        self.named, self.progress, self.phases = named, progress, phases
+        self.words, self.named, self.progress, self.phases = words, named, progress, phases
         self.frames_dir = Path(frames_dir) if frames_dir else None
         self.review = Path(review) if review else None
         self.video = VideoWriter(video, fps=world.frame_rate)
@@ -104,21 +108,29 @@ class Pictures:
         stills = set(chosen(framing.moments, len(self._kept), STILLS))
         with self.phases.phase("draw"), self.video, ThreadPoolExecutor(1, thread_name_prefix="pictures") as thread:
             try:
-                self._draw_all(stills, thread)
+                self._draw_all(stills, motion, thread)
             except BaseException:
                 thread.shutdown(cancel_futures=True)
                 raise
         if self.review:
-            told = [{"time": round(float(motion.time[m.frame]), 4), "what": m.what} for m in framing.moments]
+            told = [
+                {"time": round(float(motion.time[m.frame]), 4), "what": m.what, "weight": round(m.weight, 3)}
+                for m in framing.moments
+            ]
             self._write_review({"share_of_picture": self.seen, "moments": told})
 
-    def _draw_all(self, stills: set[int], thread: ThreadPoolExecutor) -> None:
+    def _draw_all(self, stills: set[int], motion: Motion, thread: ThreadPoolExecutor) -> None:
         waiting: deque[tuple[float, dict[str, CameraImage], Future[None]]] = deque()
         state, first = self.built.model.state(), self.renderer.cameras[0].prim
+        marks = Marks(self.world, motion.push)
+        cameras = {camera.prim: camera for camera in self.renderer.cameras}
         for frame, time in enumerate(self._kept.times):
             particles = self._kept.restore(frame, state)
             fluids = {prim: particles[part] for prim, part in self.built.fluids[0].items()}
             images = self.renderer.render(state, fluids, cameras=None if frame in stills else [first])
+            for prim, image in images.items():
+                rgb = marks.draw(image.rgb, cameras[prim], frame, motion.body_q[frame])
+                images[prim] = replace(image, rgb=rgb)
             waiting.append((time, images, thread.submit(self._keep, time, images, frame in stills)))
             while len(waiting) > AHEAD:
                 self._record(*waiting.popleft())
@@ -135,7 +147,8 @@ class Pictures:
 
     def _keep(self, time: float, images: dict[str, CameraImage], still: bool) -> None:
         """In the thread: write what does not go to the recording."""
-        self.video.write(next(iter(images.values())).rgb)
+        film = next(iter(images.values())).rgb
+        self.video.write(film if self.words is None else caption(film, time, self.words))
         for camera, image in images.items() if still else ():
             shown = {prim: round(share, 5) for prim, share in self._shares(image).items() if share}
             self.seen.append({"camera": camera, "time": round(time, 4), "objects": shown})

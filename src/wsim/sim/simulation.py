@@ -286,6 +286,7 @@ class Simulation:
         metadata: dict[str, Any] | None = None,
         progress: Progress = silent,
         named: Sequence[str] = (),
+        words: str | None = None,
     ) -> SimulationResult:
         """Simulate the stage's duration and record it.
 
@@ -299,6 +300,7 @@ class Simulation:
             metadata: Kept in the recording beside the simulator's own.
             progress: Told after each frame.
             named: Names of the objects that the run is about, which its cameras are to show; none: what moves.
+            words: A line below the video's pictures, after their time: what is judged. None: there is none.
         """
         started = time.perf_counter()
         frames = round(self.world.duration * self.world.frame_rate)
@@ -313,7 +315,9 @@ class Simulation:
             pictures = None
             if video:
                 with phases.phase("prepare the camera"):
-                    drawn = Pictures(self.world, self.built, writer, video, frames_dir, review, named, progress, phases)
+                    drawn = Pictures(
+                        self.world, self.built, writer, video, frames_dir, review, named, words, progress, phases
+                    )
                 pictures = stack.enter_context(drawn)
             writer.log(0.0, "INFO", self._summary())
             events = Events(self.built, self.fluid)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,6 +19,7 @@ from wsim.sim.framing.frame import Framing
 from wsim.sim.framing.hidden import Hidden
 from wsim.sim.framing.moments import STILLS, chosen
 from wsim.sim.framing.motion import Motion
+from wsim.sim.marks import Marks
 from wsim.sim.model import build_model
 from wsim.sim.seen import ObjectPixels
 
@@ -92,7 +93,13 @@ class Stills:
         framing = Framing(self.world, motion, named, Hidden(self._renderer, self._built))
         self._renderer.look_through(framing.cameras() or self._renderer.cameras)
         times = motion.time[chosen(framing.moments, len(motion.time), most)]
-        return [still for time in times for still in self.draw(recording, float(time))]
+        marks = Marks(self.world, motion.push)
+        frames = [recording.frame_index(float(time)) for time in times]
+        return [
+            replace(still, rgb=marks.draw(still.rgb, still.camera, frame, motion.body_q[frame]))
+            for frame, time in zip(frames, times, strict=True)
+            for still in self.draw(recording, float(time))
+        ]
 
     def draw(self, recording: Recording, time: float) -> list[Still]:
         """The world as a recording of it has it at its frame nearest to a time [s], one still a camera.

@@ -63,7 +63,7 @@ def shows(stills, name, least=ENOUGH):
     st.floats(0.0, 5.0),
 )  # fmt: skip
 def test_a_thing_thrown_anyhow_is_seen_in_all_stills(x, radius, heading, speed, looks, up):
-    """Of 2 cm to half a metre, from rest to 9 m/s: to 300 times its own size in the time, and a camera that looks off."""
+    """Of 2 cm to half a metre, from rest to 9 m/s: to 300 times its size in the time, and a camera looks off."""
     scene = a_world()
     way = math.radians(heading)
     scene.sphere(

@@ -139,7 +139,8 @@ class Framing:
         rated = sorted(((seen.worth(self._scenario), seen, view) for seen, view in found), key=lambda each: -each[0])
         if self._look is None:
             return rated[0][2], rated[0][0]
-        best, sides = (rated[0][2], -1.0), set()
+        best = (rated[0][2], -1.0)
+        sides: set[tuple[str | None, ...]] = set()
         for worth, seen, view in rated:
             if worth <= best[1] or (len(sides) >= LOOKED_AT and best[1] > KEPT * worth):
                 break  # those that follow are worth less, hidden or not

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -19,6 +20,7 @@ Array = np.ndarray
 STILLS = 6  # of a run
 SLOW = 0.05  # of its greatest speed: what is slower rests
 BLOW = 0.25  # of its greatest speed: what changes by more from one frame to the next was struck
+AGAIN = 0.6  # what the same thing weighs when it happens again
 HIGH = 0.15  # of the range of its heights: how far a summit stands out
 
 
@@ -54,15 +56,21 @@ def moments(world: World, motion: Motion, subjects: Sequence[Subject]) -> list[M
 def chosen(found: Sequence[Moment], frames: int, most: int) -> list[int]:
     """Frames for so many stills: the first, the last, and moments, the weightiest first and not side by side.
 
-    Where less happens than that, the rest are between those, where the longest time passes.
+    What happens often counts less each time: a bounce is shown with its heights. Where less happens than there are
+    stills, the rest are where the longest time passes between those.
     """
     if frames == 0:
         return []
     kept = sorted({0, frames - 1})
     apart = max(1, frames // (4 * most))
-    for moment in sorted(found, key=lambda moment: (-moment.weight, moment.frame)):
-        if len(kept) < most and min(abs(moment.frame - frame) for frame in kept) >= apart:
-            kept.append(moment.frame)
+    often: Counter[str] = Counter()
+    left = list(found)
+    while left and len(kept) < most:
+        best = max(left, key=lambda moment: (moment.weight * AGAIN ** often[moment.what], -moment.frame))
+        left.remove(best)
+        if min(abs(best.frame - frame) for frame in kept) >= apart:
+            kept.append(best.frame)
+            often[best.what] += 1
     kept.sort()
     while len(kept) < min(most, frames):
         gaps = np.diff(kept)

@@ -27,6 +27,7 @@ class Motion:
         speed: (F, B) of the centres of mass [m/s].
         force: (F, B) that contacts push with [N].
         fluids: Some of each fluid's particles, (F, n, 3) [m], by prim.
+        push: (F, B, 3) impulse that control gave each body since the frame before [N s]; None: there was none.
     """
 
     time: Array
@@ -34,6 +35,7 @@ class Motion:
     speed: Array
     force: Array
     fluids: Mapping[str, Array] = field(default_factory=dict)
+    push: Array | None = None
 
     @classmethod
     def of(cls, recording: Recording) -> Motion:
@@ -44,7 +46,9 @@ class Motion:
             if len(track.time):
                 at = np.abs(track.time[None] - time[:, None]).argmin(axis=1)
                 fluids[prim] = np.asarray(track.position[:, _some(track.position.shape[1])])[at]
-        return _finite(time, recording.body_q, recording.body_qd, recording.contact_force, fluids)
+        return _finite(
+            time, recording.body_q, recording.body_qd, recording.contact_force, fluids, recording.control_impulse
+        )
 
 
 class MotionLog:
@@ -54,11 +58,14 @@ class MotionLog:
         self._times: list[float] = []
         self._frames: list[tuple[Array, Array, Array]] = []
         self._fluids: dict[str, list[Array]] = {}
+        self._pushes: list[Array] = []
 
     def add(self, time: float, frame: Frame) -> None:
         """Keep what was measured at a time [s]."""
         self._times.append(time)
         self._frames.append((frame.body_q, frame.body_qd, frame.contact_force))
+        if frame.control_impulse is not None:
+            self._pushes.append(frame.control_impulse)
         for prim, fluid in frame.fluids.items():
             some = fluid.position[_some(len(fluid.position))]
             self._fluids.setdefault(prim, []).append(np.array(some, dtype=np.float32))
@@ -66,7 +73,8 @@ class MotionLog:
     def motion(self) -> Motion:
         """All that was added."""
         q, qd, force = (np.array(each) for each in zip(*self._frames, strict=True)) if self._frames else _nothing()
-        return _finite(np.array(self._times), q, qd, force, {p: np.array(x) for p, x in self._fluids.items()})
+        push = np.array(self._pushes) if self._pushes else None
+        return _finite(np.array(self._times), q, qd, force, {p: np.array(x) for p, x in self._fluids.items()}, push)
 
 
 def _some(count: int) -> slice:
@@ -77,7 +85,9 @@ def _nothing() -> Sequence[Array]:
     return np.zeros((0, 0, 7)), np.zeros((0, 0, 6)), np.zeros((0, 0, 3))
 
 
-def _finite(time: Array, body_q: Array, body_qd: Array, force: Array, fluids: Mapping[str, Array]) -> Motion:
+def _finite(
+    time: Array, body_q: Array, body_qd: Array, force: Array, fluids: Mapping[str, Array], push: Array | None
+) -> Motion:
     good = np.isfinite(time)
     for each in (body_q, body_qd, force, *fluids.values()):
         good &= np.isfinite(each).all(axis=(1, 2))
@@ -88,4 +98,5 @@ def _finite(time: Array, body_q: Array, body_qd: Array, force: Array, fluids: Ma
         speed=np.linalg.norm(body_qd[:end, :, :3], axis=2),
         force=np.linalg.norm(force[:end], axis=2),
         fluids={prim: np.asarray(each[:end], dtype=np.float64) for prim, each in fluids.items()},
+        push=None if push is None else np.asarray(push[:end], dtype=np.float64),
     )

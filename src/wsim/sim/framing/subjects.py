@@ -22,6 +22,7 @@ Array = np.ndarray
 MOST = 40  # objects of one sort that are looked at; of more, some
 MOVES = 0.05  # of its size: what goes no farther stands still
 MAIN, BESIDE, STANDING = 1.0, 0.25, 0.15  # weights of what is asked about, of what else moves, of what stands there
+ENDS = np.concatenate([np.eye(3), -np.eye(3)])
 CORNERS = np.array(list(product((0.0, 1.0), repeat=3)))
 
 
@@ -109,7 +110,10 @@ def _bodies(world: World, motion: Motion) -> list[Subject]:
 
 
 def _moved(body: Body, poses: Array) -> Array:
-    """Corners of a body's box through time, (F, 8, 3)."""
+    """Corners of a body's box through time, (F, 8, 3); of a ball, the ends of its diameters, (F, 6, 3)."""
+    if len(body.shapes) == 1 and body.shapes[0].kind == "sphere":
+        middle = poses[:, None, :3] + rotate(poses[:, None, 3:], np.array(body.shapes[0].position)[None, None])
+        return np.asarray(middle + body.shapes[0].size[0] * ENDS)
     outlines = [placed(outline(shape), shape.position, shape.rotation) for shape in body.shapes]
     local = np.concatenate(outlines) if outlines else np.zeros((1, 3))
     corners = local.min(axis=0) + CORNERS * np.ptp(local, axis=0)
