@@ -14,7 +14,7 @@ from wsim.scene import Scene
 from wsim.sim import Simulation
 from wsim.sim.cameras import CameraRenderer
 from wsim.sim.framing.motion import MotionLog
-from wsim.sim.pictures import Pictures
+from wsim.sim.pictures import Film, Pictures
 
 FRAMES = 12
 
@@ -138,8 +138,8 @@ def test_nothing_is_drawn_of_no_frames(stage, tmp_path):
     simulation = Simulation(stage, device="cpu", draws=True)
     world, built = simulation.world, simulation.built
     with RecordingWriter(tmp_path / "r.rrd", world) as writer:
-        files = (tmp_path / "v.mp4", tmp_path / "frames", tmp_path / "review.json")
-        with Pictures(world, built, writer, *files, [], None, silent, Phases()) as pictures:
+        film = Film(tmp_path / "v.mp4", tmp_path / "frames", tmp_path / "review.json")
+        with Pictures(world, built, lambda: built, writer, film, silent, Phases()) as pictures:
             pictures.draw(MotionLog().motion())
     assert not (tmp_path / "v.mp4").exists()
     assert json.loads((tmp_path / "review.json").read_text())["share_of_picture"] == []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+import threading
 from types import TracebackType
 from typing import TYPE_CHECKING
 
@@ -19,6 +20,7 @@ class KeptStates:
         self.times: list[float] = []
         self._poses: list[np.ndarray] = []
         self._particles = tempfile.TemporaryFile()  # noqa: SIM115 - this is the context manager
+        self._reading = threading.Lock()
         self._count = 0
 
     def __enter__(self) -> KeptStates:
@@ -52,5 +54,7 @@ class KeptStates:
         """
         if len(self._poses[frame]):
             state.body_q.assign(self._poses[frame])
-        self._particles.seek(12 * self._count * frame)
-        return np.frombuffer(self._particles.read(12 * self._count), dtype=np.float32).reshape(-1, 3)
+        with self._reading:
+            self._particles.seek(12 * self._count * frame)
+            found = self._particles.read(12 * self._count)
+        return np.frombuffer(found, dtype=np.float32).reshape(-1, 3)

@@ -6,11 +6,9 @@ They are drawn when the simulation has ended: then it is known what happened, an
 from __future__ import annotations
 
 import json
-from collections import deque
-from collections.abc import Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
-from dataclasses import replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,8 +20,10 @@ from wsim.sim.framing.frame import Framing
 from wsim.sim.framing.hidden import Hidden
 from wsim.sim.framing.moments import STILLS, chosen
 from wsim.sim.kept_states import KeptStates
-from wsim.sim.marks import Marks, caption
+from wsim.sim.marks import caption
+from wsim.sim.painter import Painter, painted
 from wsim.sim.seen import ObjectPixels, still_name, write_png
+from wsim.solvers.launch import thread_count
 
 if TYPE_CHECKING:
     from newton import State
@@ -34,24 +34,41 @@ if TYPE_CHECKING:
     from wsim.sim.framing.motion import Motion
     from wsim.sim.model import Built
 
-AHEAD = 3  # pictures that wait to be encoded
+FEW = 24  # frames: for fewer, another model is not made
+MOST, MOST_TWICE = 4, 200_000  # models that draw at once; particles of one that is made again
 
 
-class Pictures:
-    """Keeps a run's frames, and draws them when it has ended.
+@dataclass(frozen=True)
+class Film:
+    """What is made of a run's pictures.
 
-    A thread encodes and writes pictures while the next are drawn. What breaks in it is raised here.
-
-    Args:
-        world: What the stage states.
-        built: Its model.
-        writer: Gets the pictures of the world's cameras.
+    Attributes:
         video: Path of the first camera's MP4.
         frames_dir: Folder for a few PNGs of every camera, of the moments when something happens; None writes none.
         review: JSON file with those moments, and the share of the picture that each object has in those stills, from
             the shape-index image: what is in frame, whether anyone looks at it or not; None writes none.
         named: Names of the objects that the run is about; none: what moves.
         words: A line below the video's pictures, after their time; None: there is none.
+    """
+
+    video: Path
+    frames_dir: str | Path | None = None
+    review: str | Path | None = None
+    named: Sequence[str] = ()
+    words: str | None = None
+
+
+class Pictures:
+    """Keeps a run's frames, and draws them when it has ended.
+
+    Threads draw while pictures that are done are encoded and written. What breaks in one is raised here.
+
+    Args:
+        world: What the stage states.
+        built: Its model.
+        again: Builds that model once more, for another thread.
+        writer: Gets the pictures of the world's cameras.
+        film: What is made of it.
         progress: Told about compilation, and how many frames are drawn.
         phases: Gets the time of drawing and encoding.
     """
@@ -60,20 +77,15 @@ class Pictures:
         self,
         world: World,
         built: Built,
+        again: Callable[[], Built],
         writer: RecordingWriter,
-        video: str | Path,
-        frames_dir: str | Path | None,
-        review: str | Path | None,
-        named: Sequence[str],
-        words: str | None,
+        film: Film,
         progress: Progress,
         phases: Phases,
     ) -> None:
-        self.world, self.built, self.writer = world, built, writer
-        self.words, self.named, self.progress, self.phases = words, named, progress, phases
-        self.frames_dir = Path(frames_dir) if frames_dir else None
-        self.review = Path(review) if review else None
-        self.video = VideoWriter(video, fps=world.frame_rate)
+        self.world, self.built, self._again, self.writer = world, built, again, writer
+        self.film, self.progress, self.phases = film, progress, phases
+        self.video = VideoWriter(film.video, fps=world.frame_rate)
         self.renderer = CameraRenderer(built.model, world, progress=progress)
         self.objects = ObjectPixels(self.renderer.shape_prims)
         self.stills: list[Path] = []
@@ -102,67 +114,52 @@ class Pictures:
     def draw(self, motion: Motion) -> None:
         """Frame the cameras on a run's motion, and draw all that was kept: the first every frame, the others stills."""
         with self.phases.phase("frame cameras"):
-            framing = Framing(self.world, motion, self.named, Hidden(self.renderer, self.built))
+            framing = Framing(self.world, motion, self.film.named, Hidden(self.renderer, self.built))
             self.renderer.look_through(framing.cameras() or self.renderer.cameras)
             self.writer.views(self.renderer.cameras, motion.time, motion.body_q)
         stills = set(chosen(framing.moments, len(self._kept), STILLS))
-        with self.phases.phase("draw"), self.video, ThreadPoolExecutor(1, thread_name_prefix="pictures") as thread:
-            try:
-                self._draw_all(stills, motion, thread)
-            except BaseException:
-                thread.shutdown(cancel_futures=True)
-                raise
-        if self.review:
+        with self.phases.phase("draw"), self.video:
+            for frame, images in painted(self._painters(), self._kept, motion, stills):
+                self._keep(self._kept.times[frame], images, frame in stills)
+                self.progress("drawing", frame + 1, len(self._kept))
+        if self.film.review:
             told = [
                 {"time": round(float(motion.time[m.frame]), 4), "what": m.what, "weight": round(m.weight, 3)}
                 for m in framing.moments
             ]
-            self._write_review({"share_of_picture": self.seen, "moments": told})
+            text = json.dumps({"share_of_picture": self.seen, "moments": told}, indent=1)
+            partial = Path(f"{self.film.review}.partial")
+            partial.write_text(text + "\n", encoding="utf-8")
+            partial.replace(self.film.review)
 
-    def _draw_all(self, stills: set[int], motion: Motion, thread: ThreadPoolExecutor) -> None:
-        waiting: deque[tuple[float, dict[str, CameraImage], Future[None]]] = deque()
-        state, first = self.built.model.state(), self.renderer.cameras[0].prim
-        marks = Marks(self.world, motion.push)
-        cameras = {camera.prim: camera for camera in self.renderer.cameras}
-        for frame, time in enumerate(self._kept.times):
-            particles = self._kept.restore(frame, state)
-            fluids = {prim: particles[part] for prim, part in self.built.fluids[0].items()}
-            images = self.renderer.render(state, fluids, cameras=None if frame in stills else [first])
-            for prim, image in images.items():
-                rgb = marks.draw(image.rgb, cameras[prim], frame, motion.body_q[frame])
-                images[prim] = replace(image, rgb=rgb)
-            waiting.append((time, images, thread.submit(self._keep, time, images, frame in stills)))
-            while len(waiting) > AHEAD:
-                self._record(*waiting.popleft())
-            self.progress("drawing", frame + 1, len(self._kept))
-        while waiting:
-            self._record(*waiting.popleft())
-
-    def _record(self, time: float, images: dict[str, CameraImage], kept: Future[None]) -> None:
-        """Wait until a frame's pictures are kept, and record what they are and show."""
-        kept.result()
-        for camera, image in images.items():
-            self.writer.image(time, camera, image.rgb)
-            self.writer.seen(time, camera, self._shares(image))
+    def _painters(self) -> list[Painter]:
+        """This one's, and on a CPU another for each core that is free, if there is enough to draw."""
+        device, model = self.built.model.device, self.built.model
+        many = 1 if device.is_cuda or model.particle_count > MOST_TWICE else min(MOST, thread_count())
+        found = [Painter(self.renderer, self.built)]
+        for _ in range(min(many - 1, len(self._kept) // FEW)):
+            built = self._again()
+            renderer = CameraRenderer(built.model, self.world)
+            renderer.look_through(self.renderer.cameras)
+            found.append(Painter(renderer, built))
+        return found
 
     def _keep(self, time: float, images: dict[str, CameraImage], still: bool) -> None:
-        """In the thread: write what does not go to the recording."""
-        film = next(iter(images.values())).rgb
-        self.video.write(film if self.words is None else caption(film, time, self.words))
-        for camera, image in images.items() if still else ():
-            shown = {prim: round(share, 5) for prim, share in self._shares(image).items() if share}
-            self.seen.append({"camera": camera, "time": round(time, 4), "objects": shown})
-            if self.frames_dir:
-                path = self.frames_dir / still_name(camera, time)
-                write_png(path, image.rgb)
-                self.stills.append(path)
+        """Write a frame's pictures, and record what they are and show."""
+        rgb, words = next(iter(images.values())).rgb, self.film.words
+        self.video.write(rgb if words is None else caption(rgb, time, words))
+        for camera, image in images.items():
+            shares = self._shares(image)
+            self.writer.image(time, camera, image.rgb)
+            self.writer.seen(time, camera, shares)
+            if still:
+                shown = {prim: round(share, 5) for prim, share in shares.items() if share}
+                self.seen.append({"camera": camera, "time": round(time, 4), "objects": shown})
+                if self.film.frames_dir:
+                    path = Path(self.film.frames_dir) / still_name(camera, time)
+                    write_png(path, image.rgb)
+                    self.stills.append(path)
 
     def _shares(self, image: CameraImage) -> dict[str, float]:
         """The share of a picture that each object takes up; 0 for one that is not to be seen."""
         return {prim: n / image.shape_index.size for prim, n in self.objects.count(image.shape_index).items()}
-
-    def _write_review(self, told: dict[str, Any]) -> None:
-        assert self.review is not None
-        partial = self.review.with_name(self.review.name + ".partial")
-        partial.write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
-        partial.replace(self.review)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from contextlib import ExitStack
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -25,12 +26,12 @@ from wsim.sim.cameras import CameraRenderer
 from wsim.sim.devices import pick_device, steps_in_c
 from wsim.sim.entering import entered
 from wsim.sim.events import Events
-from wsim.sim.framing.frame import Framing
+from wsim.sim.framing.frame import write_views
 from wsim.sim.framing.motion import MotionLog
 from wsim.sim.measure import measure
 from wsim.sim.model import build_batch, build_model
 from wsim.sim.perturb import perturb
-from wsim.sim.pictures import Pictures
+from wsim.sim.pictures import Film, Pictures
 from wsim.sim.policies import controller_of, launch_all
 from wsim.sim.result import SimulationResult
 from wsim.sim.rigid import RigidBodies
@@ -300,7 +301,7 @@ class Simulation:
             metadata: Kept in the recording beside the simulator's own.
             progress: Told after each frame.
             named: Names of the objects that the run is about, which its cameras are to show; none: what moves.
-            words: A line below the video's pictures, after their time: what is judged. None: there is none.
+            words: A line below the video's pictures, after their time; None: there is none.
         """
         started = time.perf_counter()
         frames = round(self.world.duration * self.world.frame_rate)
@@ -315,9 +316,9 @@ class Simulation:
             pictures = None
             if video:
                 with phases.phase("prepare the camera"):
-                    drawn = Pictures(
-                        self.world, self.built, writer, video, frames_dir, review, named, words, progress, phases
-                    )
+                    again = partial(build_model, self.stage, self.world, self.device, 1, self.dt)
+                    film = Film(Path(video), frames_dir, review, named, words)
+                    drawn = Pictures(self.world, self.built, again, writer, film, progress, phases)
                 pictures = stack.enter_context(drawn)
             writer.log(0.0, "INFO", self._summary())
             events = Events(self.built, self.fluid)
@@ -345,10 +346,7 @@ class Simulation:
             if self.sensors and not problems:
                 self.sensors.ask(self.step_count, self)  # whose turn is at the end
             motion = moved.motion()
-            if pictures:
-                pictures.draw(motion)
-            elif self.world.cameras:
-                writer.views(Framing(self.world, motion, named).cameras(), motion.time, motion.body_q)
+            pictures.draw(motion) if pictures else write_views(writer, self.world, motion, named)
             if problems:
                 writer.close(complete=False, error="; ".join(problems))
         return SimulationResult(
@@ -397,8 +395,6 @@ class Simulation:
         }
 
     def _summary(self) -> str:
-        return (
-            f"{len(self.world.bodies)} bodies, {self.model.particle_count} fluid particles, "
-            f"{self.substeps} steps of {self.dt * 1e3:.3f} ms a frame (limited by {self.built.time_step.reason}), "
-            f"on {self.device}"
-        )
+        counts = f"{len(self.world.bodies)} bodies, {self.model.particle_count} fluid particles"
+        steps = f"{self.substeps} steps of {self.dt * 1e3:.3f} ms a frame (limited by {self.built.time_step.reason})"
+        return f"{counts}, {steps}, on {self.device}"

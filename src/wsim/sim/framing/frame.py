@@ -17,6 +17,7 @@ from wsim.sim.framing.tried import views, views_from_there
 from wsim.sim.render_views import DEFAULT_CAMERA
 
 if TYPE_CHECKING:
+    from wsim.recording import RecordingWriter
     from wsim.scene.world import World
 
 Array = np.ndarray
@@ -150,6 +151,12 @@ class Framing:
                 if told > best[1]:
                     best = (view, told)
         return best
+
+
+def write_views(writer: RecordingWriter, world: World, motion: Motion, named: Sequence[str] = ()) -> None:
+    """Have a recording say where a world's cameras would be framed, where no pictures are taken."""
+    if world.cameras:
+        writer.views(Framing(world, motion, named).cameras(), motion.time, motion.body_q)
 
 
 def _side(view: Camera) -> tuple[str | None, ...]:
