@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
 Array = np.ndarray
 PIN, PUSH, INK, PAPER = (250, 250, 250), (235, 105, 20), (20, 20, 20), (255, 255, 255)
 PIN_RADIUS, LONGEST, LEAST = 0.007, 0.09, 0.02  # of the picture's width: a hinge's ring, the arrow of the largest push
-FEW = 8  # hinges of one object: of more, as robots and vehicles have, none is marked
 FAINT = 0.02  # of the largest push of a run: what is less is not drawn
 TEXT = 0.026  # of the picture's width, the height of its letters
 
@@ -37,9 +35,12 @@ class Marks:
         self._push = push
         self._largest = float(np.linalg.norm(push, axis=2).max(initial=0.0)) if push is not None else 0.0
         self._rows = {body.prim: k for k, body in enumerate(world.bodies)}
-        hinges = [j for j in world.joints if j.kind == "revolute" and j.child_anchor is not None]
-        count = Counter(object_of(joint.child) for joint in hinges)
-        self._hinges = [joint for joint in hinges if count[object_of(joint.child)] <= FEW and joint.child in self._rows]
+        self._hinges = [joint for joint in world.joints if joint.kind == "revolute" and self._is_shown(joint)]
+
+    def _is_shown(self, joint: Joint) -> bool:
+        """Whether a hinge is between things: those of one, as a vehicle's wheels and a robot's links, are its own."""
+        known = joint.child in self._rows and joint.child_anchor is not None
+        return known and (joint.parent is None or object_of(joint.parent) != object_of(joint.child))
 
     def draw(self, rgb: Array, camera: Camera, frame: int, body_q: Array) -> Array:
         """A picture with the marks of a frame.

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from wsim.sim.model import Built
 
 FEW = 24  # frames: for fewer, another model is not made
-MOST, MOST_TWICE = 4, 200_000  # models that draw at once; particles of one that is made again
+MOST = 4  # models that draw at once
 
 
 @dataclass(frozen=True)
@@ -133,9 +133,12 @@ class Pictures:
             partial.replace(self.film.review)
 
     def _painters(self) -> list[Painter]:
-        """This one's, and on a CPU another for each core that is free, if there is enough to draw."""
-        device, model = self.built.model.device, self.built.model
-        many = 1 if device.is_cuda or model.particle_count > MOST_TWICE else min(MOST, thread_count())
+        """This one's, and on a CPU another for each core, if there is enough to draw.
+
+        Of a fluid's surface Warp's tiles are in memory that threads share: that is drawn by one.
+        """
+        alone = self.built.model.device.is_cuda or self.built.model.particle_count > 0
+        many = 1 if alone else min(MOST, thread_count())
         found = [Painter(self.renderer, self.built)]
         for _ in range(min(many - 1, len(self._kept) // FEW)):
             built = self._again()

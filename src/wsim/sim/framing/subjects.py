@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 Array = np.ndarray
 MOST = 40  # objects of one sort that are looked at; of more, some
 MOVES = 0.05  # of its size: what goes no farther stands still
-MAIN, BESIDE, STANDING = 1.0, 0.25, 0.15  # weights of what is asked about, of what else moves, of what stands there
+MAIN, BESIDE, STANDING = 1.0, 0.25, 0.1  # weights of what is asked about, of what else moves, of what stands there
 ENDS = np.concatenate([np.eye(3), -np.eye(3)])
 CORNERS = np.array(list(product((0.0, 1.0), repeat=3)))
 
@@ -69,6 +69,8 @@ class Subject:
 def subjects(world: World, motion: Motion, named: Sequence[str] = ()) -> list[Subject]:
     """What is to be seen, the main ones first: what is named, else what moves, else what could; never the ground.
 
+    What those are tied to is as one of them.
+
     Args:
         world: What the stage states.
         motion: Of one frame or more.
@@ -80,10 +82,20 @@ def subjects(world: World, motion: Motion, named: Sequence[str] = ()) -> list[Su
     able = [*bodies, *fluids]
     movers = [each for each in able if each.moves]
     main = [each for each in able if each.prim in asked] or movers or able
+    standing = _statics(world, len(motion.time))
+    tied = _tied(world, {each.prim for each in main})
+    main += [each for each in (*able, *standing) if each.prim in tied]
     mains = {each.prim for each in main}
-    beside = [each for each in movers if each.prim not in mains]
-    standing = [each for each in _statics(world, len(motion.time)) if each.prim in asked]
-    return [*_weighed(main, MAIN, True), *_weighed(beside, BESIDE, False), *_weighed(standing, STANDING, False)]
+    beside, around = ([each for each in group if each.prim not in mains] for group in (movers, standing))
+    return [*_weighed(main, MAIN, True), *_weighed(beside, BESIDE, False), *_weighed(around, STANDING, False)]
+
+
+def _tied(world: World, prims: set[str]) -> set[str]:
+    """What joints, springs and ropes tie objects to: it is seen with them, as what they hang from."""
+    ties = [[guide.owner or guide.body for guide in cord.path] for cord in world.cords]
+    ties += [[joint.child, joint.parent or joint.fixture] for joint in world.joints]
+    groups = [{object_of(owner) for owner in tie if owner} for tie in ties]
+    return {prim for group in groups if group & prims for prim in group - prims}
 
 
 def _weighed(found: list[Subject], weight: float, main: bool) -> list[Subject]:
