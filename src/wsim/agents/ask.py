@@ -33,12 +33,17 @@ class UnusableError(UserError):
 
 @dataclass
 class Desk:
-    """What the roles of a run share."""
+    """What the roles of a run share; a `fresh` one takes no replies that are kept from before."""
 
     models: Models
     transcript: Transcript
     ledger: Ledger
     replay: Replay | None = None
+    fresh: bool = False
+
+    def answers(self, role: str) -> bool:
+        """Whether a role's model would answer now: a recorded run has no word for what it was not asked."""
+        return self.replay is None or (bool(self.replay.left) and self.replay.left[0].role == role)
 
     def ask(
         self,
@@ -90,8 +95,9 @@ class Desk:
         called: list[str] = []
         name = self.models[role]
         model = Relay(
-            connect(name, role) if self.replay is None else None, name, role, self.transcript, self.ledger, self.replay
-        )
+            connect(name, role) if self.replay is None else None, name, role, self.transcript, self.ledger, self.replay,
+            fresh=self.fresh,
+        )  # fmt: skip
         agent: Agent[None, T] = Agent(
             model,
             output_type=TextOutput(read),

@@ -73,6 +73,7 @@ class Relay(WrapperModel):
         ledger: Is charged.
         replay: Answers in place of the model.
         sleep: Waits between attempts [s].
+        fresh: Ask whatever was asked before, too; replies are kept all the same.
     """
 
     def __init__(
@@ -84,10 +85,12 @@ class Relay(WrapperModel):
         ledger: Ledger,
         replay: Replay | None = None,
         sleep: Callable[[float], Any] = asyncio.sleep,
+        *,
+        fresh: bool = False,
     ) -> None:
         super().__init__(wrapped if wrapped is not None else _absent())
         self.name, self.role, self.transcript, self.ledger, self.replay = name, role, transcript, ledger, replay
-        self.sleep = sleep
+        self.sleep, self.fresh = sleep, fresh
         self._kept: list[str] = []
 
     async def request(
@@ -108,7 +111,7 @@ class Relay(WrapperModel):
             return self._replayed(request)
         key = request.digest(self.name)
         self._kept.append(key)
-        known = cache.get(key)
+        known = None if self.fresh else cache.get(key)
         if known is not None:
             self.ledger.account(self.role).cached += 1
             self.transcript.add(self.role, self.name, request, reply=known, cached=True)

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import Field
 
 from wsim.errors import UserError
+from wsim.plan.asked.covered import not_checked
+from wsim.plan.feasible.plan import refuse_impossible
 from wsim.plan.store import load, save
 from wsim.plan.unheeded import unheeded
 from wsim.tools.base import Arguments, Result, Tool, Workspace
@@ -63,6 +65,7 @@ def write_plan(workspace: Workspace, asked: WritePlan) -> Result:
     side.write_bytes(text.encode("utf-8", "surrogatepass"))  # what is no text, the reader says
     try:
         plan = load(side)
+        refuse_impossible(plan, side)
     except UserError as error:
         return Result(f"not written: {str(error).removeprefix(f'{side}: ')}", ok=False)
     finally:
@@ -101,7 +104,10 @@ def _show(plan: Plan, part: Part, name: str) -> list[str]:
     for key in ("objects", "relations", "objectives", "joints", "cords", "contacts", "cameras"):
         lines += parts[key](plan, name)
     rest = [f"{len(rows)} {key}" for key, rows in (("assumptions", plan.assumptions), ("steps", plan.steps)) if rows]
-    lines += [f"not done: {line}" for line in unheeded(plan) if not name]
+    if not name:
+        lines += [f"not done: {line}" for line in unheeded(plan)]
+        lines += [f"not checked: {line}" for line in not_checked(plan)]
+        lines += [f"stands in for: {plan.stands_in_for}"] if plan.stands_in_for else []
     return [*lines, *([f"also: {', '.join(rest)}"] if rest else [])]
 
 

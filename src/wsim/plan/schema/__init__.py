@@ -2,6 +2,7 @@
 
 from wsim.plan.schema.actuation import ArcPlan, BrakePlan
 from wsim.plan.schema.base import Name, Vec3
+from wsim.plan.schema.clause import Clause
 from wsim.plan.schema.constructions import (
     AreaPlan,
     Clearance,
@@ -57,6 +58,7 @@ __all__ = [
     "AssumptionKind",
     "BrakePlan",
     "CameraPlan",
+    "Clause",
     "Clearance",
     "Contact",
     "Cord",

@@ -9,6 +9,7 @@ from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, mod
 from wsim.defaults import DURATION, FRAME_RATE
 from wsim.limits import NO_BOUND
 from wsim.plan.schema.base import Name, NotNegative, Number, Positive, Share, Sparse, Strict, Text, Vec3, Word
+from wsim.plan.schema.clause import Clause
 from wsim.plan.schema.cords import Cord
 from wsim.plan.schema.formula import Formula
 from wsim.plan.schema.objects import PlanObject
@@ -229,6 +230,9 @@ class Assumption(Sparse):
         return self
 
 
+_UNWRITTEN = ("contacts", "cords", "clauses", "stands_in_for")  # where they are empty
+
+
 class Draft(Strict):
     """Everything that is to be built and judged: each part valid by itself."""
 
@@ -244,14 +248,16 @@ class Draft(Strict):
     sensors: list[SensorPlan] = Field(default_factory=list, max_length=1000)
     steps: list[Step] = Field(default_factory=list, max_length=1000)
     objectives: list[Objective] = Field(default_factory=list, max_length=10_000)
+    clauses: list[Clause] = Field(default_factory=list, max_length=1000)  # of the prompt; none: nothing is held to it
+    stands_in_for: Text | None = None  # what was asked for and cannot be simulated, where this world is the nearest
     simulation: SimulationPlan = Field(default_factory=SimulationPlan)
     outputs: Outputs = Field(default_factory=Outputs)
     assumptions: list[Assumption] = Field(default_factory=list, max_length=10_000)
 
     @model_serializer(mode="wrap")
     def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Without `contacts` and `cords` where there are none, so that a plan without them reads as it always did."""
-        return {name: value for name, value in write(self).items() if name not in ("contacts", "cords") or value}
+        """Without what it has none of, so that a plan without it reads as it always did."""
+        return {name: value for name, value in write(self).items() if name not in _UNWRITTEN or value}
 
     def object(self, name: str) -> PlanObject:
         """The object of that name; KeyError naming the known ones."""

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, get_args
 
 from wsim.limits import MAX_DURATION, MAX_FRAME_RATE, MAX_FRICTION, bad_stops, bad_time_step
+from wsim.plan.schema.clauses import clause_problems
 from wsim.plan.schema.cord_problems import cord_problems
 from wsim.plan.schema.draft import KindOfTwo
 from wsim.plan.schema.land import land_problems
@@ -36,6 +37,7 @@ def problems(plan: Draft) -> list[str]:
         *_by_time(plan),
         *land_problems(plan),
         *_others(plan),
+        *clause_problems(plan),
     ]
 
 
