@@ -11,7 +11,8 @@ import pytest
 
 from tests.agents.flies import BALL, CAMERA, CLAUSES, GROUND, MOVES, PROMPT, answer
 from tests.agents.scripted import Server, text
-from wsim.agents.ask import RETRIES, Desk, instructions
+from wsim.agents.ask import RETRIES, Desk
+from wsim.agents.chapters import planner_prompt
 from wsim.agents.failures import ModelError
 from wsim.agents.planner import HINTS, plan_with, read_plan
 from wsim.errors import UserError
@@ -247,7 +248,7 @@ def constructions() -> list[Any]:
 
 
 def test_the_prompt_names_every_construction_and_role_with_their_fields() -> None:
-    told = instructions("planner")
+    told = planner_prompt()
     assert {model.model_fields["kind"].default for model in constructions()} == {*EXAMPLES}
     assert all(f'"{role}"' in told for role in ROLE_PRIMITIVES)
     assert not re.search(r"\{[A-Z]+\}", told)

@@ -7,17 +7,14 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from wsim.agents.budget import BudgetError, Ledger
+from wsim.agents.chapters import PROMPTS
 from wsim.agents.failures import ModelError
 from wsim.agents.models import Models, connect
 from wsim.agents.transcript import Transcript
 from wsim.errors import UserError
-from wsim.judge.language.sentence import vocabulary
-from wsim.plan.schema.examples import constructions, roles
-from wsim.scene.vehicle_spec import preset, presets
 
 if TYPE_CHECKING:
     from wsim.agents.relay import Replay
@@ -57,6 +54,7 @@ class Desk:
         pictures: Sequence[bytes] = (),
         tools: Sequence[Tool] = (),
         workspace: Workspace | None = None,
+        told: str | None = None,
     ) -> T:
         """What `accept` makes of the model's answer.
 
@@ -67,6 +65,7 @@ class Desk:
             pictures: JPEGs that it sees.
             tools: What it may call, in `workspace`.
             workspace: The run that the tools work on.
+            told: Its instructions; its prompt in prompts/ by default.
 
         Raises:
             ModelError: If it gave nothing that can be used.
@@ -102,7 +101,7 @@ class Desk:
         agent: Agent[None, T] = Agent(
             model,
             output_type=TextOutput(read),
-            instructions=instructions(role),
+            instructions=told or instructions(role),
             tools=[_offered(tool, workspace, called) for tool in tools if workspace is not None],
             retries={"output": RETRIES, "tools": RETRIES},
             capabilities=[ProcessHistory(shortened)],
@@ -155,23 +154,8 @@ def _schema(schema: dict[str, Any]) -> dict[str, Any]:
 
 @cache
 def instructions(role: str) -> str:
-    """The prompt of a role; what objectives and objects may be is from the language's and the schema's own tables."""
-    text = (Path(__file__).parent / "prompts" / f"{role}.md").read_text(encoding="utf-8")
-    for place, table in (
-        ("PREDICATES", vocabulary), ("CONSTRUCTIONS", constructions), ("ROLES", roles), ("VEHICLES", _vehicles),
-    ):  # fmt: skip
-        text = text.replace(f"{{{place}}}", table())
-    return text
-
-
-def _vehicles() -> str:
-    """Length, width and height of each kind of vehicle, the way between its axles [m], its mass."""
-    told = []
-    for kind in presets():
-        spec = preset(kind)
-        size = " x ".join(f"{edge:g}" for edge in (spec.length, spec.width, spec.height))
-        told.append(f"{kind} {size}, {spec.wheelbase:g}, {spec.mass:g} kg")
-    return "; ".join(told)
+    """The prompt of a role."""
+    return (PROMPTS / f"{role}.md").read_text(encoding="utf-8")
 
 
 def object_in(text: str) -> dict[str, Any]:

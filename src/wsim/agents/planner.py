@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from wsim.agents.ask import UnusableError, object_in
+from wsim.agents.chapters import asked_for, chapters_for, planner_prompt, told
 from wsim.agents.failures import ModelError
 from wsim.agents.robots import robots_for
 from wsim.agents.shorthand import written_out
@@ -59,7 +60,10 @@ def plan_with(desk: Desk, prompt: str, pictures: Sequence[bytes] = (), image: st
     kept: list[Plan] = []  # sound but for its clauses, for which a model is asked once
 
     def read(text: str) -> Plan | Cannot:
-        plan = _read(object_in(text), prompt, known)
+        answer = object_in(text)
+        if wanted := asked_for(answer):
+            raise UnusableError(told(wanted))
+        plan = _read(answer, prompt, known)
         if isinstance(plan, Cannot):
             return plan
         lacks = clauses_lacking(plan)
@@ -69,7 +73,9 @@ def plan_with(desk: Desk, prompt: str, pictures: Sequence[bytes] = (), image: st
         return _with_clauses(plan) if kept else plan
 
     try:
-        found = desk.ask("planner", "\n\n".join(request), read, pictures=pictures)
+        found = desk.ask(
+            "planner", "\n\n".join(request), read, pictures=pictures, told=planner_prompt(chapters_for(prompt))
+        )
     except ModelError:
         if not kept:
             raise

@@ -18,6 +18,7 @@ from wsim.cli.approve import approved, with_answers
 from wsim.cli.options import (
     EXIT_CODES,
     Answers,
+    Caption,
     CoderModel,
     Device,
     Image,
@@ -94,6 +95,7 @@ def generate(
     runs: Runs = Path("runs"),
     isolation: Isolation = "auto",
     pictures: Pictures = True,
+    caption: Caption = False,
     time_step: TimeStep = None,
     verify: Verify = False,
     params: Set = None,
@@ -115,6 +117,7 @@ def generate(
             device=device,
             isolation=isolation,
             pictures=pictures,
+            caption=caption,
             time_step=time_step,
             verify=verify,
             params=parse_params(params),

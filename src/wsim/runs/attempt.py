@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,6 +21,9 @@ from wsim.runs.pulled import pull_missing
 from wsim.runs.trajectory import Trajectory
 from wsim.scene.describe import describe
 from wsim.scene.world import Camera
+
+if TYPE_CHECKING:
+    from wsim.sim.stills import Still
 
 
 class Reached(IntEnum):
@@ -114,6 +118,7 @@ def attempt(iteration: Iteration, cheap_first: bool = True) -> Attempt:
         if verdict is not None:
             made.verdict = iteration.conclude(verdict)
             if verdict.status != "accepted":
+                iteration.leave_stills()
                 return made
     made.reached = Reached.ALL
     return made
@@ -157,7 +162,7 @@ def _framed(made: Attempt, iteration: Iteration) -> Verdict | None:
     things = [item for item in plan.objects if item.primitive not in ("ground", "tank")] if plan else []
     named = {f"/World/{item.name}" for item in things if item.material is None or item.material.opacity == 1.0}
     findings = []
-    for still in sim.Stills(iteration.stage, iteration.settings.device, progress=iteration.progress).draw_start():
+    for still in _stills_of_asked(iteration):
         pixels = {prim: count for prim, count in still.pixels.items() if prim in named and count}
         if named & set(still.pixels) and not pixels:
             findings.append(
@@ -174,6 +179,16 @@ def _framed(made: Attempt, iteration: Iteration) -> Verdict | None:
     if not findings:
         return None
     return Verdict(status="rejected", summary=f"Cameras that show nothing: {len(findings)}.", findings=findings)
+
+
+def _stills_of_asked(iteration: Iteration) -> list[Still]:
+    """The start, seen by the cameras that stay as they are; the others will be framed on what happens."""
+    world = describe(iteration.stage)
+    fixed = [camera for camera in world.cameras if camera.fixed]
+    if not fixed:
+        return []
+    stills = sim.Stills(iteration.stage, iteration.settings.device, fixed, iteration.progress)
+    return stills.draw_start()
 
 
 def _look_at(camera: Camera, stage: Path) -> RepairTarget:

@@ -106,7 +106,10 @@ class Contact(Sparse):
 
 
 class CameraPlan(Strict):
-    """A camera: from `eye` at `target`, or by a `view` of the scene or of one object, which the layout resolves."""
+    """A camera: from `eye` at `target`, or by a `view` of the scene or of one object, which the layout resolves.
+
+    One that the prompt asks for has its words, and is kept. Others are corrected where they do not show what happens.
+    """
 
     name: Name
     eye: Vec3 | None = None  # [m]
@@ -114,11 +117,12 @@ class CameraPlan(Strict):
     view: View | None = None
     of: Name | None = None
     follows: Name | None = None  # an object that moves: it keeps its offset from that, which is where it starts
+    words: Text = ""  # of the prompt, that ask for this very view
 
     @model_serializer(mode="wrap")
     def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Without `follows` where it stands, so that a plan without it reads as it always did."""
-        return {name: value for name, value in write(self).items() if name != "follows" or value}
+        """Without `follows` and `words` that it lacks, so that a plan without them reads as it always did."""
+        return {name: value for name, value in write(self).items() if name not in ("follows", "words") or value}
 
     @model_validator(mode="after")
     def _one_way(self) -> CameraPlan:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, get_args
 
 from wsim.limits import MAX_DURATION, MAX_FRAME_RATE, MAX_FRICTION, bad_stops, bad_time_step
 from wsim.plan.schema.clauses import clause_problems
-from wsim.plan.schema.cords import cord_problems
+from wsim.plan.schema.cord_problems import cord_problems
 from wsim.plan.schema.draft import KindOfTwo
 from wsim.plan.schema.land import land_problems
 from wsim.plan.schema.supports import support_problems
