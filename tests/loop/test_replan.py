@@ -79,6 +79,7 @@ def test_a_coder_that_cannot_sends_the_plan_back(
     request = server.asked("planner")[1]
     for part in (PROMPT, "The coder: 0.2 s at 1.5 m/s are 0.3 m", '"duration": 0.2', "ObjectiveMoves"):
         assert part in request
+    assert "{PREDICATES}" not in request  # its instructions are the planner's, filled in
     folder = kept.folder
     assert json.loads((folder / "plan-1.json").read_text())["simulation"]["duration"] == 0.2
     assert json.loads((folder / "plan.json").read_text())["simulation"]["duration"] == 0.4

@@ -39,13 +39,13 @@ HINTS = (
 def plan_with(desk: Desk, prompt: str, pictures: Sequence[bytes] = (), image: str = "") -> Plan:
     """The model's plan of a prompt, laid out.
 
+    A prompt whose point cannot be simulated has the plan that comes nearest, which says what it stands in for.
+
     Args:
         desk: Asks the planner's model.
         prompt: What the world must be.
         pictures: JPEGs of what it must look like.
         image: Name of the picture's file, for the plan.
-
-    A prompt whose point cannot be simulated has the plan that comes nearest, which says what it stands in for.
 
     Raises:
         ModelError: If no answer became a plan, or nothing comes near.

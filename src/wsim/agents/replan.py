@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from wsim.agents.ask import UnusableError, object_in
+from wsim.agents.chapters import asked_for, chapters_for, planner_prompt, told
 from wsim.agents.planner import clauses_lacking, read_plan
 from wsim.plan.asked.weaker import WIDER, weakened
 from wsim.plan.schema.draft import Assumption
@@ -53,10 +54,15 @@ def replan(desk: Desk, plan: Plan, evidence: Sequence[str]) -> Replanned:
         "# It may be at fault",
         *evidence,
     ]
-    return desk.ask("planner", "\n\n".join([*request, RULES]), lambda text: _read(object_in(text), plan))
+    instructions = planner_prompt(chapters_for(plan.prompt))
+    return desk.ask(
+        "planner", "\n\n".join([*request, RULES]), lambda text: _read(object_in(text), plan), told=instructions
+    )
 
 
 def _read(answer: dict[str, Any], plan: Plan) -> Replanned:
+    if wanted := asked_for(answer):
+        raise UnusableError(told(wanted))
     why = " ".join(str(answer.get("why") or answer.get("keep") or "").split())[:REASON]
     if "keep" in answer:
         return Replanned(None, why)
