@@ -61,7 +61,7 @@ def _expanded(text: str, symbols: dict[str, list[str]], rng: random.Random) -> s
 
 
 def _spelled(text: str) -> str:
-    text = _ARTICLE.sub(lambda found: f"{'an' if found[1].lower() in 'aeio' else 'a'} {found[1]}", text)
+    text = _ARTICLE.sub(lambda found: f"{'an' if found[1] in 'aeio' else 'a'} {found[1]}", text)
     return text[0].upper() + text[1:]
 
 
@@ -89,7 +89,7 @@ def refusal(text: str) -> str:
 def built(text: str, runs: Path, pictures: bool) -> tuple[str, str, float]:
     """Status, summary and seconds of the world that a sentence becomes."""
     started = time.perf_counter()
-    command = [sys.executable, "-m", "wsim", "generate", text, "--yes", "--runs", str(runs)]
+    command = [str(Path(sys.executable).with_name("wsim")), "generate", text, "--yes", "--runs", str(runs)]
     try:
         done = subprocess.run(
             [*command, *([] if pictures else ["--no-pictures"])], capture_output=True, text=True, timeout=PATIENCE
