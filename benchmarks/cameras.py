@@ -103,8 +103,8 @@ class Measured:
 def measure(folder: Path) -> Measured:
     """How well the stills of a run show its subjects."""
     from wsim import recording
-    from wsim.plan.asked import asked_about
     from wsim.plan.store import load
+    from wsim.plan.subjects import asked_about
     from wsim.sim.framing.hidden import FILLS
     from wsim.sim.framing.motion import Motion
     from wsim.sim.framing.shown import IN, Scenario, shown

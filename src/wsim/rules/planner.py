@@ -13,6 +13,7 @@ from __future__ import annotations
 import re
 
 from wsim.errors import UserError
+from wsim.plan.asked.tied import tied
 from wsim.plan.layout import layout
 from wsim.plan.layout.land import set_down
 from wsim.plan.schema import Plan, SimulationPlan
@@ -61,15 +62,17 @@ def plan(prompt: str) -> Plan:
     }
     placed = layout(Plan(objects=scene.objects, **common))
     whole = set_down(Plan(objects=[*placed.objects, *scene.posed], joints=scene.joints, **common))
-    return Plan.model_validate(
-        {
-            **whole.model_dump(),
-            "contacts": [*scene.contacts, *contacts(cast, scene.names, whole)],
-            "objectives": scene.objectives,
-            "cameras": scene.cameras or cameras(whole, above=scene.surface, goes=scene.goes),
-            "steps": steps(whole),
-            "assumptions": cast.assumptions,
-        }
+    return tied(
+        Plan.model_validate(
+            {
+                **whole.model_dump(),
+                "contacts": [*scene.contacts, *contacts(cast, scene.names, whole)],
+                "objectives": scene.objectives,
+                "cameras": scene.cameras or cameras(whole, above=scene.surface, goes=scene.goes),
+                "steps": steps(whole),
+                "assumptions": cast.assumptions,
+            }
+        )
     )
 
 

@@ -55,6 +55,7 @@ class Attempt:
         review: What the reviewer saw, as text.
         seen: The differences from the plan that a reviewer's model saw; None: none looked.
         repair: What the judge wants mended first, as text.
+        plan_fault: What of the plan no program can make true, as the judge has it.
     """
 
     folder: Path
@@ -65,6 +66,7 @@ class Attempt:
     review: str = ""
     seen: list[str] | None = None
     repair: str = ""
+    plan_fault: str = ""
 
     @property
     def number(self) -> int:
@@ -84,9 +86,9 @@ class Attempt:
 
 
 def _short(finding: Finding) -> float:
-    """By how much a finding misses its limit, as a share of it, between 0 and 1; 1 where it has no numbers."""
+    """By how much a finding misses its limit, as a share of it, between 0 and 1; its weight where it has no numbers."""
     if finding.margin is None or finding.margin >= 0.0:
-        return 1.0
+        return finding.weight
     scale = max(abs(finding.limit or 0.0), abs(finding.expected or 0.0))
     return round(-finding.margin / (scale - finding.margin), 6)
 

@@ -16,7 +16,7 @@ from wsim.assets import asset_folders
 from wsim.judge import judge
 from wsim.judge.repair.aim import aim
 from wsim.judge.verdict import Finding, Verdict
-from wsim.plan.asked import asked_about
+from wsim.plan.subjects import asked_about
 from wsim.program import sandbox
 from wsim.program.control import ControlError
 from wsim.progress import Progress, silent
