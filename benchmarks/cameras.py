@@ -130,7 +130,7 @@ def measure(folder: Path) -> Measured:
         for s, subject in enumerate(main):
             if subject.prim in clear:
                 continue
-            count = pixels * row["objects"].get(subject.prim, 0.0)
+            count = pixels * sum(row["objects"].get(part, 0.0) for part in subject.parts)
             left, top, right, bottom = view.box[k, s]
             area = 0.25 * (right - left) * (bottom - top) * pixels
             seen.append(count >= ENOUGH and view.inside[k, s] >= IN)

@@ -497,9 +497,12 @@ def camera_away(plan: Plan, draw: Draw) -> Mistake | None:
     camera, (x, y, z) = draw.pick(plan.cameras), draw.direction()
     a, b, c = camera.eye or (0.0, 0.0, 0.0)
     target = (round(a + x, 3), round(b + y, 3), round(c + abs(z), 3))
-    return Mistake(
-        f"{camera.name} looks at {target}", program=_with(camera.name, "target", lambda _: target), opened=_as_it_is
-    )
+
+    def change(build: ast.FunctionDef) -> None:
+        put(call_of(build, camera.name), "target", target)
+        put(call_of(build, camera.name), "fixed", True)  # another is corrected without a repair
+
+    return Mistake(f"{camera.name} looks at {target}", program=edited(change), opened=_as_it_is)
 
 
 @wrong
@@ -511,6 +514,7 @@ def camera_elsewhere(plan: Plan, draw: Draw) -> Mistake | None:
     def change(build: ast.FunctionDef) -> None:
         put(call_of(build, camera.name), "eye", eye)
         put(call_of(build, camera.name), "target", target)
+        put(call_of(build, camera.name), "fixed", True)
 
     return Mistake(f"{camera.name} stands at {eye}", program=edited(change), opened=_as_it_is)
 

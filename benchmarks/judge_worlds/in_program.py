@@ -144,12 +144,15 @@ def swapped(first: str, second: str) -> PlanChange:
 
 
 def looking(direction: Vec3) -> PlanChange:
-    """Every camera looks elsewhere, from where it stands."""
+    """Every camera looks elsewhere, from where it stands, and is meant to: another would be corrected."""
 
     def change(plan: Plan) -> Plan:
         turned_away = [
             camera.model_copy(
-                update={"target": tuple(a + b for a, b in zip(camera.eye or (0, 0, 0), direction, strict=True))}
+                update={
+                    "target": tuple(a + b for a, b in zip(camera.eye or (0, 0, 0), direction, strict=True)),
+                    "words": "away",
+                }
             )
             for camera in plan.cameras
         ]
@@ -159,9 +162,10 @@ def looking(direction: Vec3) -> PlanChange:
 
 
 def seen_from(eye: Vec3, target: Vec3) -> PlanChange:
-    """Every camera stands elsewhere."""
+    """Every camera stands elsewhere, and is meant to."""
+    there = {"eye": eye, "target": target, "words": "there"}
     return lambda plan: plan.model_copy(
-        update={"cameras": [camera.model_copy(update={"eye": eye, "target": target}) for camera in plan.cameras]}
+        update={"cameras": [camera.model_copy(update=there) for camera in plan.cameras]}
     )
 
 

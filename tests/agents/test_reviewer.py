@@ -57,7 +57,8 @@ def test_facts_are_shares_of_the_picture(made: Path, tmp_path: Path) -> None:
     side, above = facts(made)
     assert side.startswith("side (% of picture at start/least/end): ")
     assert above.startswith("above (")
-    start, least, end = map(float, side.partition("ball ")[2].split(",")[0].split("/"))
+    shares = side.partition("ball ")[2].split(",")[0].split("/")
+    start, least, end = (float(share.partition("@")[0]) for share in shares)
     assert 0.0 < least <= min(start, end) < 5.0
     assert facts(tmp_path) == []
 
@@ -69,7 +70,9 @@ def test_a_reviewer_is_shown_all_of_it(server: Server, desk: Desk, plan: Plan, m
     (request,) = server.asked("reviewer")
     for part in ("A ball flies", "ball moves", *facts(made)):
         assert part in request
-    assert re.search(r"top to bottom: side 00\.000s, (side \S+, )+above 00\.800s\n", request)  # as the plan has them
+    assert re.search(
+        r"top to bottom: side 00\.000s, (side \S+( \([^)]+\))?, )+above 00\.800s\n", request
+    )  # as the plan has them
     sent = server.requests[0]["messages"][1]["content"][1]["image_url"]["url"]
     assert sent.startswith("data:image/jpeg;base64,")
 

@@ -84,7 +84,8 @@ def test_a_wrong_program_is_mended_by_its_first_suggestion(tmp_path, monkeypatch
     camera = PLAN.cameras[0]
     away = RepairTarget(kind="camera", prim=f"/World/{camera.name}", parameter="target", vector=(0.0, -50.0, 20.0))
     made = Outcome("camera_away", "tuning", 0)
-    mend(made, mended(PROGRAM, away, PLAN), PLAN, PLAN)
+    fixed = PROGRAM.replace(f'scene.camera("{camera.name}",', f'scene.camera("{camera.name}", fixed=True,')
+    mend(made, mended(fixed, away, PLAN), PLAN, PLAN)
     assert (made.found, made.rounds, made.error, made.left) == ("CheckInFrame", 1, "", []), made
 
 

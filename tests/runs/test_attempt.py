@@ -54,8 +54,8 @@ def test_a_program_that_raises_made_no_world(tmp_path: Path) -> None:
     assert json.loads((made.folder / "checks.json").read_text())["build"]["ok"] is False
 
 
-def test_a_camera_that_sees_nothing_is_found_before_anything_moves(tmp_path: Path) -> None:
-    away = PROGRAM.replace("target=(0.0, 0.0, 1.2)", "target=(0.0, -40.0, 30.0)")
+def test_a_fixed_camera_that_sees_nothing_is_found_before_anything_moves(tmp_path: Path) -> None:
+    away = PROGRAM.replace("target=(0.0, 0.0, 1.2)", "target=(0.0, -40.0, 30.0), fixed=True")
     assert away != PROGRAM
     made = tried(tmp_path, away, Settings(device="cpu"))
     assert (made.reached, made.verdict.status) == (Reached.FRAMES, "rejected")
@@ -64,11 +64,22 @@ def test_a_camera_that_sees_nothing_is_found_before_anything_moves(tmp_path: Pat
     assert finding.target is not None
     assert (finding.target.kind, finding.target.parameter) == ("camera", "eye, target")
     assert not (made.folder / "recording.rrd").exists()
+    assert [path.name for path in (made.folder / "frames").iterdir()] == ["side_00.000s.png"]
     # The picture from there shows it.
     eye, target = finding.target.vector[:3], finding.target.vector[3:]
-    there = PROGRAM.replace("eye=(0.0, -4.0, 1.5), target=(0.0, 0.0, 1.2)", f"eye={eye}, target={target}")
+    there = PROGRAM.replace("eye=(0.0, -4.0, 1.5), target=(0.0, 0.0, 1.2)", f"eye={eye}, target={target}, fixed=True")
     assert there != PROGRAM
     assert tried(tmp_path / "again", there, Settings(device="cpu")).reached > Reached.FRAMES
+
+
+def test_another_camera_that_sees_nothing_is_corrected(tmp_path: Path) -> None:
+    """What fails is what the world does; its stills, of what was recorded without pictures, show the ball."""
+    away = PROGRAM.replace("target=(0.0, 0.0, 1.2)", "target=(0.0, -40.0, 30.0)")
+    made = tried(tmp_path, away, Settings(device="cpu"))
+    assert [finding.check for finding in made.verdict.failures] == ["ObjectiveMoves"]
+    rows = json.loads((made.folder / "review.json").read_text())["share_of_picture"]
+    assert len(rows) == len(list((made.folder / "frames").glob("side_*.png"))) == 3  # of three frames
+    assert min(row["objects"].get("/World/ball", 0.0) for row in rows) > 0.001
 
 
 def test_a_world_of_clear_things_alone_is_not_said_to_show_nothing(tmp_path: Path) -> None:
@@ -79,13 +90,14 @@ def test_a_world_of_clear_things_alone_is_not_said_to_show_nothing(tmp_path: Pat
     assert made.reached > Reached.FRAMES and "CheckView" not in {f.check for f in made.verdict.findings}
 
 
-def test_a_world_that_does_not_pass_has_no_pictures(tmp_path: Path) -> None:
+def test_a_world_that_does_not_pass_has_stills_and_no_video(tmp_path: Path) -> None:
     made = tried(tmp_path, PROGRAM, Settings(device="cpu"))
     assert (made.reached, made.verdict.status) == (Reached.PHYSICS, "rejected")
     assert [finding.check for finding in made.verdict.failures] == ["ObjectiveMoves"]
     assert made.earlier is None
     assert (made.folder / "recording.rrd").is_file()
     assert not (made.folder / "video.mp4").exists()
+    assert len(list((made.folder / "frames").glob("*.png"))) == 3  # as many as frames
     written = Verdict.model_validate_json((made.folder / "verdict.json").read_text())
     assert written == made.verdict
 

@@ -55,7 +55,7 @@ class Style:
     """Light and sky; colours are linear RGB."""
 
     sun_color: Color = (0.92, 0.85, 0.72)
-    sun_direction: Color = (-0.45, 0.55, -0.85)  # from the sun into the scene; a distant light of the world goes first
+    sun_direction: Color = render_views.SUN  # from the sun into the scene; a distant light of the world goes first
     ambient_up: Color = (0.24, 0.28, 0.34)  # on faces that look up
     ambient_down: Color = (0.12, 0.11, 0.10)  # on faces that look down
     zenith: Color = (0.10, 0.26, 0.60)

@@ -10,7 +10,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from wsim.geometry.rotations import line_of_sight, rotate
 from wsim.scene.following import camera_at
-from wsim.scene.labels import object_of
+from wsim.scene.labels import object_of, wholes
 
 if TYPE_CHECKING:
     from wsim.scene.world import Camera, Joint, World
@@ -35,12 +35,14 @@ class Marks:
         self._push = push
         self._largest = float(np.linalg.norm(push, axis=2).max(initial=0.0)) if push is not None else 0.0
         self._rows = {body.prim: k for k, body in enumerate(world.bodies)}
+        self._whole = wholes(world)
         self._hinges = [joint for joint in world.joints if joint.kind == "revolute" and self._is_shown(joint)]
 
     def _is_shown(self, joint: Joint) -> bool:
         """Whether a hinge is between things: those of one, as a vehicle's wheels and a robot's links, are its own."""
         known = joint.child in self._rows and joint.child_anchor is not None
-        return known and (joint.parent is None or object_of(joint.parent) != object_of(joint.child))
+        ends = [self._whole.get(object_of(prim)) for prim in (joint.parent, joint.child) if prim is not None]
+        return known and len(set(ends)) == len(ends)
 
     def draw(self, rgb: Array, camera: Camera, frame: int, body_q: Array) -> Array:
         """A picture with the marks of a frame.

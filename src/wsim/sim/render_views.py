@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from wsim.scene.world import Shape, World
 
+SUN = (-0.45, 0.55, -0.85)  # from it into a scene that states no light
 DEFAULT_CAMERA = "/World/default_camera"
 FILLED = 0.86  # share of the frame that a default view fills
 GROUND_EDGE = 20.0  # [m]: a box at least this long in x and y is taken for ground

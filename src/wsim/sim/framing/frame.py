@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +15,7 @@ from wsim.sim.framing.motion import Motion
 from wsim.sim.framing.shown import Scenario, Shown, shown
 from wsim.sim.framing.subjects import Subject, subjects
 from wsim.sim.framing.tried import views, views_from_there
-from wsim.sim.render_views import DEFAULT_CAMERA
+from wsim.sim.render_views import DEFAULT_CAMERA, SUN
 
 if TYPE_CHECKING:
     from wsim.recording import RecordingWriter
@@ -31,6 +32,7 @@ WELL, KEPT = 0.7, 0.75  # of 1, and of the best view's worth: a camera that is w
 SHOWN = 0.9  # of the time: for how long a camera that is kept shows each main subject
 LOOKED_AT = 4  # views whose pictures are looked at, at least, for what hides what
 OWN = 1.1  # what a view from the side that the camera was on is worth, of one from another
+LIT = 0.05  # what a view that the sun is behind is worth more, and one against it less
 DIGITS = 3
 
 
@@ -90,7 +92,7 @@ class Framing:
             time[frames], self.motion.body_q[frames], self.motion.speed[frames], self.motion.force[frames],
             {prim: points[frames] for prim, points in self.motion.fluids.items()},
         )  # fmt: skip
-        thin = [Subject(each.prim, each.points[frames], each.weight, each.main, each.body) for each in found]
+        thin = [replace(each, points=each.points[frames]) for each in found]
         self._scenario = Scenario(self.world, moved, thin, weight / weight.sum(), np.isin(frames, stills))
 
     def _own(self, lens: Camera) -> list[Camera]:
@@ -117,6 +119,12 @@ class Framing:
             return camera
         return _rounded(there) if worth > own else camera
 
+    def _lit(self, view: Camera) -> float:
+        """What a view is worth for its light, of one across it: more with the sun behind the camera."""
+        sun = next((light.direction for light in self.world.lights if light.kind == "distant"), SUN)
+        back, light = (np.array(way[:2]) for way in (np.subtract(view.eye, view.target), sun))
+        return 1.0 - LIT * float(back @ light) / max(float(np.linalg.norm(back) * np.linalg.norm(light)), 1e-12)
+
     def _worth(self, camera: Camera) -> tuple[float, bool]:
         """What a camera is worth, and whether it shows each main subject for long enough."""
         assert self._scenario is not None
@@ -137,7 +145,10 @@ class Framing:
         """The view that shows most, and what it is worth; what hides what is looked at in the best ones only."""
         assert self._scenario is not None
         found = [(shown(view, self._scenario), view) for view in tried]
-        rated = sorted(((seen.worth(self._scenario), seen, view) for seen, view in found), key=lambda each: -each[0])
+        rated = sorted(
+            ((self._lit(view) * seen.worth(self._scenario), seen, view) for seen, view in found),
+            key=lambda each: -each[0],
+        )
         if self._look is None:
             return rated[0][2], rated[0][0]
         best = (rated[0][2], -1.0)
@@ -147,7 +158,7 @@ class Framing:
                 break  # those that follow are worth less, hidden or not
             if _side(view) not in sides:
                 sides.add(_side(view))
-                told = seen.worth(self._scenario, self._hidden(view, seen))
+                told = self._lit(view) * seen.worth(self._scenario, self._hidden(view, seen))
                 if told > best[1]:
                     best = (view, told)
         return best

@@ -49,10 +49,10 @@ class Hidden:
             count = self._objects.count(self._picture(camera, scenario, int(frame)))
             pixels = sum(count.values())
             for s, subject in enumerate(scenario.subjects):
-                if subject.prim in self._opaque and seen.inside[frame, s] >= IN and pixels:
+                if self._opaque.issuperset(subject.parts) and seen.inside[frame, s] >= IN and pixels:
                     left, top, right, bottom = seen.box[frame, s]
                     area = max(0.25 * (right - left) * (bottom - top) * self._size, 1.0 / FILLS)
-                    shares[k, s] = 1.0 - min(1.0, count.get(subject.prim, 0) / (FILLS * area))
+                    shares[k, s] = 1.0 - min(1.0, sum(count.get(p, 0) for p in subject.parts) / (FILLS * area))
                     weights[k, s] = scenario.weight[frame]
         total = weights.sum(axis=0)
         return np.asarray((weights * shares).sum(axis=0) / np.where(total > 0.0, total, 1.0))

@@ -44,12 +44,10 @@ def moments(world: World, motion: Motion, subjects: Sequence[Subject]) -> list[M
     found: list[Moment] = []
     if len(motion.time) < 3:
         return found
-    rows: dict[str, list[int]] = {}
-    for k, body in enumerate(world.bodies):
-        rows.setdefault(object_of(body.prim), []).append(k)
     for subject in subjects:
         if subject.main:
-            found += _of(subject, motion, rows.get(subject.prim, []))
+            rows = [k for k, body in enumerate(world.bodies) if object_of(body.prim) in subject.parts]
+            found += _of(subject, motion, rows)
     return sorted(found, key=lambda moment: moment.frame)
 
 

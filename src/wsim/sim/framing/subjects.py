@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from wsim.geometry.rotations import rotate
-from wsim.scene.labels import object_of
+from wsim.scene.labels import object_of, wholes
 from wsim.sim.render_views import is_ground, outline, placed
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ class Subject:
     Attributes:
         prim: A child of the root.
         points: (F, n, 3) [m].
+        parts: Prims of what it is made of, itself among them.
         weight: How much it matters that it is seen; those of all subjects sum up to about 1.
         main: Whether the run is about it.
         body: Index of the body that a camera follows, which goes with it; None: it has none.
@@ -43,6 +44,7 @@ class Subject:
     weight: float
     main: bool
     body: int | None = None
+    parts: tuple[str, ...] = ()
 
     @property
     def centre(self) -> Array:
@@ -76,9 +78,14 @@ def subjects(world: World, motion: Motion, named: Sequence[str] = ()) -> list[Su
         motion: Of one frame or more.
         named: Names of the objects that are asked about.
     """
-    asked = {f"/World/{name}" for name in named}
+    whole = wholes(world)
+    asked = {whole.get(prim, prim) for prim in (f"/World/{name}" for name in named)}
     bodies = _bodies(world, motion)
-    fluids = [Subject(prim, _box_of(points), 0.0, False) for prim, points in motion.fluids.items() if points.shape[1]]
+    fluids = [
+        Subject(prim, _box_of(points), 0.0, False, parts=(prim,))
+        for prim, points in motion.fluids.items()
+        if points.shape[1]
+    ]
     able = [*bodies, *fluids]
     movers = [each for each in able if each.moves]
     main = [each for each in able if each.prim in asked] or movers or able
@@ -94,7 +101,8 @@ def _tied(world: World, prims: set[str]) -> set[str]:
     """What joints, springs and ropes tie objects to: it is seen with them, as what they hang from."""
     ties = [[guide.owner or guide.body for guide in cord.path] for cord in world.cords]
     ties += [[joint.child, joint.parent or joint.fixture] for joint in world.joints]
-    groups = [{object_of(owner) for owner in tie if owner} for tie in ties]
+    whole = wholes(world)
+    groups = [{whole.get(prim, prim) for prim in (object_of(owner) for owner in tie if owner)} for tie in ties]
     return {prim for group in groups if group & prims for prim in group - prims}
 
 
@@ -104,20 +112,22 @@ def _weighed(found: list[Subject], weight: float, main: bool) -> list[Subject]:
         found = [found[k] for k in np.unique(np.linspace(0, len(found) - 1, MOST).astype(int))]
     shares = np.array([1.0 if each.moves else 0.5 for each in found])
     parts = weight * shares / max(shares.sum(), 1.0)
-    return [
-        Subject(each.prim, each.points, float(part), main, each.body) for each, part in zip(found, parts, strict=True)
-    ]
+    return [replace(each, weight=float(part), main=main) for each, part in zip(found, parts, strict=True)]
 
 
 def _bodies(world: World, motion: Motion) -> list[Subject]:
     """Each object that has bodies; the heaviest of them is followed."""
     parts: dict[str, list[int]] = {}
+    whole = wholes(world)
     for k, body in enumerate(world.bodies):
-        parts.setdefault(object_of(body.prim), []).append(k)
+        if body.shapes:
+            parts.setdefault(whole[object_of(body.prim)], []).append(k)
     found = []
     for prim, rows in parts.items():
         points = np.concatenate([_moved(world.bodies[k], motion.body_q[:, k]) for k in rows], axis=1)
-        found.append(Subject(prim, points, 0.0, False, max(rows, key=lambda k: world.bodies[k].mass)))
+        heaviest = max(rows, key=lambda k: world.bodies[k].mass)
+        names = tuple(dict.fromkeys(object_of(world.bodies[k].prim) for k in rows))
+        found.append(Subject(prim, points, 0.0, False, heaviest, names))
     return found
 
 
@@ -142,7 +152,7 @@ def _statics(world: World, frames: int) -> list[Subject]:
         if shapes and not any(is_ground(shape) for shape in shapes):
             local = np.concatenate([placed(outline(shape), shape.position, shape.rotation) for shape in shapes])
             corners = local.min(axis=0) + CORNERS * np.ptp(local, axis=0)
-            found.append(Subject(prim, np.broadcast_to(corners, (frames, 8, 3)), 0.0, False))
+            found.append(Subject(prim, np.broadcast_to(corners, (frames, 8, 3)), 0.0, False, parts=(prim,)))
     return found
 
 
