@@ -179,7 +179,7 @@ def test_worlds_of_a_batch_move_as_each_does_alone(tmp_path, device):
         scene = Scene()
         falls(scene, height, delay)
         scene.box("block", size=(0.2,) * 3, mass=2, position=(6, 6, 3))
-        scene.schedule("push", "block", "force", times=[0.02, 0.2 * height], values=[(force, 0, 0), (0, 0, 0)])
+        scene.schedule("push", "block", "force", times=[0.02, 0.05 + 0.5 * height], values=[(force, 0, 0), (0, 0, 0)])
         scene.simulation(duration=0.2)
         return scene.save(tmp_path / f"{name}.usda")
 
