@@ -3,6 +3,9 @@
 What models were asked hangs on prompts and skills, which grow; what they answered is what was recorded. So the replies
 must lead to the same patches and programs, byte for byte, and each program must come as far as it did. Which findings
 fail on the way is the judge's affair, which learns.
+
+A first draft without the `control` that its plan asks for now ends before it is simulated, and no judge is asked of it:
+what was recorded of that judge is left out of `crank_slider` and `model_errors`.
 """
 
 import json

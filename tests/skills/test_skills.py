@@ -30,7 +30,7 @@ PATTERNS = {
     "floating-bodies", "joints-and-mechanisms",
     "objectives", "parameters", "pendulums-and-springs", "projectiles-and-collisions", "raw-usd", "repairing",
     "rigid-bodies", "robots", "ropes-and-pulleys", "stacks-and-contact", "time-step-and-stability",
-    "sensors", "terrain", "tracks-terrain-compounds", "vehicles", "waves-and-dam-breaks",
+    "schedules", "sensors", "terrain", "tracks-terrain-compounds", "vehicles", "waves-and-dam-breaks",
 }  # fmt: skip
 CHECKS = {check.name for check in [*run_checks(), *physics_checks()]} | {"CheckConverged", "ObjectiveFormula"}
 CHECKS |= {name_of(kind) for kind in KINDS}

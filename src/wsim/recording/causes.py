@@ -17,7 +17,13 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float32]
 
-WIDTHS = {names.APPLIED: 4, names.APPLIED_TURN: 3, names.CONTROLLED: 3, names.LEAD: 6}  # of a body's
+WIDTHS = {
+    names.APPLIED: 4,
+    names.APPLIED_TURN: 3,
+    names.CONTROLLED: 3,
+    names.SCHEDULED: 6,
+    names.LEAD: 6,
+}  # of a body's
 
 
 def of_bodies(frame: Frame) -> dict[str, Floats]:
@@ -25,6 +31,7 @@ def of_bodies(frame: Frame) -> dict[str, Floats]:
     found = {
         names.APPLIED_TURN: frame.applied_turn,
         names.CONTROLLED: frame.control_impulse,
+        names.SCHEDULED: frame.scheduled,
         names.LEAD: frame.lead,
     }
     if frame.applied_impulse is not None and frame.applied_work is not None:

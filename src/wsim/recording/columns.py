@@ -46,6 +46,7 @@ APPLIED = "wsim.Body:applied"  # impulse and work
 APPLIED_TURN = "wsim.Body:applied_turn"  # angular impulse
 LEAD = "wsim.Body:lead"  # momentum and angular momentum that velocities gained beside all impulses
 CONTROLLED = "wsim.Body:controlled"  # impulse of control, which is part of the applied one
+SCHEDULED = "wsim.Body:scheduled"  # impulse and angular impulse of schedules, which are part of the applied ones
 SENSED = "wsim.Sensor:values"
 SEGMENTATION = "wsim.Sensor:segmentation"  # a PNG
 SEEN = "wsim.Camera:seen"

@@ -44,6 +44,7 @@ class Frame:
     applied_work: Floats | None = None  # (B,) [J]
     applied_turn: Floats | None = None  # (B, 3) [N m s], about the centre of mass
     control_impulse: Floats | None = None  # (B, 3) [N s], what of the applied one is control's
+    scheduled: Floats | None = None  # (B, 6) [N s, N m s], what of the applied one is schedules'
     wall_impulse: Floats | None = None  # (3,) [N s], of fluid on all that stands still
     lead: Floats | None = None  # (B, 6) [N s, N m s], what velocities gained that steps had not given yet
     contacts: Pushes | None = None  # what pairs of shapes gave each other

@@ -46,9 +46,9 @@ def read(path: str | Path) -> Recording:
     frame_ns, frame_time = table.get(names.FRAME_ENTITY, names.FRAME_TIME, (), np.float64)
     clock = Clock(frame_ns, frame_time)
     body_q, body_qd, force = _bodies(table, world, frame_ns, path)
-    applied, turn, control, lead = (
+    applied, turn, control, scheduled, lead = (
         read_bodies(table, world, frame_ns, name)
-        for name in (names.APPLIED, names.APPLIED_TURN, names.CONTROLLED, names.LEAD)
+        for name in (names.APPLIED, names.APPLIED_TURN, names.CONTROLLED, names.SCHEDULED, names.LEAD)
     )
     return Recording(
         path=path,
@@ -68,6 +68,7 @@ def read(path: str | Path) -> Recording:
         applied_work=None if applied is None else applied[:, :, 3],
         applied_turn=turn,
         control_impulse=control,
+        scheduled=scheduled,
         lead=lead,
         wall_impulse=read_frames(table, frame_ns, names.WALL_IMPULSE),
         contacts=read_contacts(table, frame_ns),

@@ -94,6 +94,7 @@ class Recording:
     applied_work: Floats | None = None  # (T, B) [J], likewise
     applied_turn: Floats | None = None  # (T, B, 3) [N m s], likewise, about the centre of mass
     control_impulse: Floats | None = None  # (T, B, 3) [N s], what of the applied one is control's
+    scheduled: Floats | None = None  # (T, B, 6) [N s, N m s], what of the applied ones is schedules'
     wall_impulse: Floats | None = None  # (T, 3) [N s], of fluid on all that stands still since the frame before
     lead: Floats | None = None  # (T, B, 6) [N s, N m s], momentum and angular momentum beside all impulses, likewise
     contacts: ContactTrack | None = None  # what pairs of shapes gave each other since the frame before

@@ -151,7 +151,7 @@ def _validated(made: Attempt, iteration: Iteration) -> Verdict | None:
 def _built(made: Attempt, iteration: Iteration) -> Verdict | None:
     made.reached = Reached.BUILD
     built = iteration.build()
-    return None if built.ok else no_world(built)
+    return iteration.foresee() if built.ok else no_world(built)
 
 
 def _framed(made: Attempt, iteration: Iteration) -> Verdict | None:

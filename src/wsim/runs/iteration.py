@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from wsim import importers, recording, sim
 from wsim.assets import asset_folders
 from wsim.judge import judge
+from wsim.judge.foreseen import foreseen
 from wsim.judge.repair.aim import aim
 from wsim.judge.verdict import Finding, Verdict
 from wsim.plan.subjects import asked_about
@@ -130,8 +131,17 @@ class Iteration:
             draws.apply(self.stage, self.settings.draws)
         return built
 
+    def foresee(self) -> Verdict | None:
+        """The verdict on what plan, stage and program tell without a simulation; None where nothing is wrong."""
+        if self.plan is None:
+            return None
+        found = foreseen(describe(self.stage), self.plan, is_controlled(self.program))
+        return reject(found[0], f"Known before it is run: {found[0].message}.") if found else None
+
     def happen(self) -> Verdict:
         """Stage → recording → verdict, which is not written yet; checks.json says how it went."""
+        if (verdict := self.foresee()) is not None:
+            return verdict
         before = self.checks
         checks: dict[str, Any] = {"build": before.get("build")}
         seconds = dict(before.get("seconds", {}))

@@ -30,6 +30,7 @@ from wsim.scene.materials import Material  # noqa: E402
 from wsim.scene.roads import Road  # noqa: E402
 from wsim.scene.robots import Robot  # noqa: E402
 from wsim.scene.scene import Scene  # noqa: E402
+from wsim.scene.schedules import Event  # noqa: E402
 from wsim.scene.tanks import Tank  # noqa: E402
 from wsim.scene.terrain import Terrain  # noqa: E402
 from wsim.scene.tracks import Track  # noqa: E402
@@ -42,6 +43,7 @@ __all__ = [
     "Brake",
     "Drive",
     "Driver",
+    "Event",
     "Fluid",
     "Handle",
     "Hill",

@@ -17,6 +17,7 @@ WORLD = "/World"
 LOOKS = "/World/Looks"
 PARAMETERS = "/World/Parameters"
 CONTACTS = "/World/Contacts"
+SCHEDULES = "/World/Schedules"
 PHYSICS_SCENE = "/World/PhysicsScene"
 
 _PACKAGE = str(Path(__file__).parent) + os.sep
@@ -87,7 +88,7 @@ class Author:
         return prim
 
     def _object_names(self) -> list[str]:
-        reserved = {LOOKS, PARAMETERS, CONTACTS, PHYSICS_SCENE}
+        reserved = {LOOKS, PARAMETERS, CONTACTS, SCHEDULES, PHYSICS_SCENE}
         children = self._stage.GetPrimAtPath(WORLD).GetAllChildren()
         return [prim.GetName() for prim in children if str(prim.GetPath()) not in reserved]
 

@@ -47,6 +47,7 @@ from wsim.scene.skeleton import is_free
 from wsim.scene.usd_cameras import camera_problems
 from wsim.scene.usd_policies import policy_problems
 from wsim.scene.usd_reaches import reach_problems
+from wsim.scene.usd_schedules import schedule_problems
 from wsim.scene.usd_sensors import sensor_problems
 from wsim.scene.usd_shapes import to_vec3
 
@@ -150,6 +151,7 @@ def _stage_problems(stage: Usd.Stage, known: bool) -> Iterator[str]:
         yield from joint_problems(stage)
         yield from policy_problems(ours)
         yield from reach_problems(ours)
+        yield from schedule_problems(ours)
         yield from sensor_problems(ours)
         yield from camera_problems(prims)
         if any(schema.has(prim, schema.CONTACT) for prim in ours):

@@ -17,6 +17,7 @@ from wsim.errors import UserError
 from wsim.scene import schema
 from wsim.scene.describe_cords import ropes, springs
 from wsim.scene.describe_joints import read_gears, read_joints
+from wsim.scene.describe_schedules import read_schedules
 from wsim.scene.errors import one_line
 from wsim.scene.usd_cameras import is_view, read_camera
 from wsim.scene.usd_contacts import read_contacts
@@ -24,7 +25,7 @@ from wsim.scene.usd_mass import mass_of
 from wsim.scene.usd_motion import curve_of, path_of, with_surface_velocity
 from wsim.scene.usd_policies import read_policies
 from wsim.scene.usd_prims import line_of, object_path, owner_of, rigid_frame, turn_of, value_of
-from wsim.scene.usd_reaches import read_reaches, read_schedules
+from wsim.scene.usd_reaches import read_joint_paths, read_reaches
 from wsim.scene.usd_sensors import read_sensors
 from wsim.scene.usd_shapes import collides_as_hull, collides_exactly, read_shape, to_quat, to_vec3
 from wsim.scene.world import (
@@ -69,7 +70,8 @@ def describe(stage: Usd.Stage | str | Path) -> World:
         joints=joints,
         gears=gears,
         policies=list(read_policies(ours)),
-        schedules=list(read_schedules(ours)),
+        schedules=read_schedules(ours),
+        joint_paths=list(read_joint_paths(ours)),
         reaches=list(read_reaches(ours)),
         sensors=list(read_sensors(ours)),
         apart=[*_meshed(joints, gears), *_filtered(prims)],

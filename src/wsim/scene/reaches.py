@@ -16,7 +16,7 @@ REACHES = "reaches"  # the scope of a robot that holds them
 _NAMES = Sdf.ValueTypeNames
 
 
-def write_schedule(call: Call, joint: Usd.Prim, times: list[float], positions: list[float]) -> None:
+def write_joint_path(call: Call, joint: Usd.Prim, times: list[float], positions: list[float]) -> None:
     """Author where a joint's servo goes by time.
 
     Args:
@@ -27,9 +27,9 @@ def write_schedule(call: Call, joint: Usd.Prim, times: list[float], positions: l
     """
     if len(times) != len(positions):
         call.fail(f"times has {len(times)} entries and positions {len(positions)}; give as many of both")
-    if schema.has(joint, schema.SCHEDULE):
+    if schema.has(joint, schema.JOINT_PATH):
         call.fail(f"{joint.GetName()} has a schedule already; put both their times and positions into one call")
-    schema.apply(joint, schema.SCHEDULE, {
+    schema.apply(joint, schema.JOINT_PATH, {
         "times": (_NAMES.DoubleArray, Vt.DoubleArray(times)),
         "positions": (_NAMES.DoubleArray, Vt.DoubleArray(positions)),
     })  # fmt: skip

@@ -13,7 +13,7 @@ from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics
 from wsim.scene import schema
 from wsim.scene.articulation import mark_articulations
 from wsim.scene.authoring import Author, Handle, calling_folder, note_line, rotation, set_pose, world_pose
-from wsim.scene.reaches import rising, write_reach, write_schedule
+from wsim.scene.reaches import rising, write_joint_path, write_reach
 from wsim.scene.robot_drives import ROBOT, JointLaw, is_angular, write_drive
 from wsim.scene.robot_pose import followed, lowest, one_freedom, place_links
 from wsim.scene.validate import Call, shown, suggestion
@@ -112,14 +112,14 @@ class Robot(Handle):
             most = law.effort if max_force is None else call.positive("max_force", max_force, _MAX_GAIN, "")
             if gain == 0.0 and (damp == 0.0 or not free):
                 call.fail(f"{prim.GetName()}: {_no_servo(prim)}")
-            if (position, velocity) != (None, None) and schema.has(prim, schema.SCHEDULE):
+            if (position, velocity) != (None, None) and schema.has(prim, schema.JOINT_PATH):
                 call.fail(f"{prim.GetName()} has a schedule, which says where it goes; leave position and velocity out")
             unit = math.pi / 180.0 if is_angular(prim) else 1.0
             start = float(prim.GetCustomDataByKey(f"{ROBOT}Start") or 0.0)
             goal = start if position is None else call.within("position", position, -36000.0, 36000.0) * unit
             if when:
                 goal = where[0] * unit if where else start
-                write_schedule(call, prim, when, where)
+                write_joint_path(call, prim, when, where)
             speed = 0.0 if velocity is None else call.within("velocity", velocity, -1e6, 1e6) * unit
             law = law.tuned(gain, damp, most)
             law.note(prim)

@@ -21,6 +21,7 @@ from wsim.scene.motions import Motions
 from wsim.scene.policies import Policies
 from wsim.scene.robots import Robots
 from wsim.scene.scattered import Scattered
+from wsim.scene.schedules import Schedules
 from wsim.scene.sensors import Sensors
 from wsim.scene.specs import define
 from wsim.scene.validate import Call, shown, suggestion
@@ -30,7 +31,7 @@ from wsim.scene.views import Views
 _MAX_SEED = 2**31 - 1
 
 
-class Scene(Scattered, Cables, Vehicles, Contacts, Motions, Views, Robots, Policies, Sensors):
+class Scene(Scattered, Cables, Vehicles, Contacts, Motions, Views, Robots, Policies, Sensors, Schedules):
     """A world to be: an OpenUSD stage and the calls that author it.
 
     SI units, Z up, +X forward, +Y left. Every call checks what it is given and raises `SceneError`, naming the call,

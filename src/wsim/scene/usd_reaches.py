@@ -12,17 +12,17 @@ from wsim.limits import MAX_DURATION, MAX_KEYS, MAX_POSITION
 from wsim.scene import schema
 from wsim.scene.usd_prims import line_of, targets_of, value_of
 from wsim.scene.usd_shapes import to_quat, to_vec3
-from wsim.scene.world import Reach, Schedule
+from wsim.scene.world import JointPath, Reach
 
 _FARTHEST_TURN = 36000.0  # [deg]
 
 
-def read_schedules(prims: Iterable[Usd.Prim]) -> Iterator[Schedule]:
+def read_joint_paths(prims: Iterable[Usd.Prim]) -> Iterator[JointPath]:
     """The schedules among a stage's prims, which was checked."""
     for prim in prims:
-        if schema.has(prim, schema.SCHEDULE):
+        if schema.has(prim, schema.JOINT_PATH):
             unit = math.pi / 180.0 if prim.IsA(UsdPhysics.RevoluteJoint) else 1.0
-            yield Schedule(
+            yield JointPath(
                 prim=str(prim.GetPath()),
                 times=list(value_of(prim, "times", ())),
                 positions=[unit * each for each in value_of(prim, "positions", ())],
@@ -50,7 +50,7 @@ def read_reaches(prims: Iterable[Usd.Prim]) -> Iterator[Reach]:
 def reach_problems(prims: Iterable[Usd.Prim]) -> Iterator[str]:
     """Problems of the schedules and the reaches among a stage's prims."""
     for prim in prims:
-        if schema.has(prim, schema.SCHEDULE):
+        if schema.has(prim, schema.JOINT_PATH):
             yield from (f"{prim.GetPath()}.wsim:{problem}" for problem in _of_schedule(prim))
         if schema.has(prim, schema.REACH):
             yield from (f"{prim.GetPath()}.wsim:{problem}" for problem in _of_reach(prim))

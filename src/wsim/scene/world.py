@@ -11,6 +11,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from wsim.assets.policies import PolicySpec
 from wsim.defaults import DURATION, FIELD_OF_VIEW, FRAME_RATE, GRAVITY
+from wsim.geometry.profiles import Profile
+from wsim.quantities import Name as Quantity
 from wsim.scene.world_sensors import Sensor
 
 Vec3 = tuple[float, float, float]
@@ -219,7 +221,46 @@ class Policy(_Model):
     line: str | None = None
 
 
+class Event(_Model):
+    """What starts the clock of a schedule: the first time that it is so.
+
+    `first` and `second` are prims by kind: touch = two objects that touch; place = a body, whose origin is beyond
+    `value` [m] along a world's axis; joint = a joint that is beyond `value` [rad or m]; start, end = a schedule whose
+    first or last key comes.
+    """
+
+    kind: Literal["touch", "place", "joint", "start", "end"]
+    first: str
+    second: str | None = None
+    axis: Literal["X", "Y", "Z"] | None = None
+    value: float = 0.0
+    above: bool = True  # beyond: above the value, or below
+    delay: float = 0.0  # [s] from it to the clock's zero
+
+
 class Schedule(_Model):
+    """A quantity of something by time (`wsim.quantities`): what it is at key frames; before the first it is as stated.
+
+    The times are those of its own clock, which goes from the start of the run, or from an event on.
+    """
+
+    prim: str
+    target: str  # prim of a joint, a body, a static object or a pair's `Contact`
+    quantity: Quantity
+    times: list[float]  # [s], rising
+    values: list[tuple[float, ...]]  # SI, radians
+    linear: bool = False  # straight from key to key; else each is kept until the next
+    point: Vec3 | None = None  # [m] in the body's frame, where its force acts; None: the centre of mass
+    after: Event | None = None
+    line: str | None = None
+
+    @property
+    def profile(self) -> Profile:
+        """Its values by its own clock."""
+        return Profile.of(self.times, self.values, self.linear)
+
+
+class JointPath(_Model):
     """Where a joint's servo goes by time: at each position at its time, smoothly from one to the next."""
 
     prim: str  # of the joint
@@ -364,6 +405,7 @@ class World(_Model):
     ropes: list[Rope] = Field(default_factory=list)
     policies: list[Policy] = Field(default_factory=list)
     schedules: list[Schedule] = Field(default_factory=list)
+    joint_paths: list[JointPath] = Field(default_factory=list)
     reaches: list[Reach] = Field(default_factory=list)
     sensors: list[Sensor] = Field(default_factory=list)
     apart: list[tuple[str, str]] = Field(default_factory=list)  # objects or shapes that never touch

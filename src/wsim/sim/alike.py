@@ -15,10 +15,12 @@ from wsim.scene.validate import shown
 from wsim.scene.world import (
     Body,
     Contact,
+    Event,
     Fluid,
     Gear,
     Guide,
     Joint,
+    JointPath,
     Motor,
     Policy,
     Reach,
@@ -40,7 +42,9 @@ FREE: dict[type[BaseModel], frozenset[str]] = {
     Gear: frozenset({"ratio", "offset"}),
     Contact: frozenset({"friction", "restitution"}),
     Policy: frozenset({"times", "commands", "speed"}),
-    Schedule: frozenset({"times", "positions"}),
+    JointPath: frozenset({"times", "positions"}),
+    Schedule: frozenset({"times", "values", "linear", "point"}),
+    Event: frozenset({"value", "delay"}),
     Reach: frozenset({"point", "start", "times", "positions", "rotations"}),
     SensorIMU: frozenset(
         {"position", "rotation", "accelerometer_noise", "gyroscope_noise", "accelerometer_bias", "gyroscope_bias"}

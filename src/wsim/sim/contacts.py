@@ -129,6 +129,12 @@ def shape_numbers(model: Any, world: World) -> Array:
     return np.array([number.get(_of_label(label, known).prim, -1) for label in _labels(model)], dtype=np.int64)
 
 
+def shape_prims(model: Any, world: World) -> list[str]:
+    """The prim behind each shape of the model's first world."""
+    known = _shapes(world)
+    return [_of_label(label, known).prim for label in _labels(model)]
+
+
 def _labels(model: Any) -> list[str]:
     """Of the shapes of the model's first world; the others have the same."""
     return [str(label) for label in model.shape_label[: model.shape_count // max(1, model.world_count)]]

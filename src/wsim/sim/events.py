@@ -33,7 +33,9 @@ class Events:
             if scalars[f"broken{name}"] and joint.prim not in self._broken:
                 self._broken.add(joint.prim)
                 force, torque = scalars[f"force{name}"], scalars[f"torque{name}"]
-                found.append((joint.prim, f"{joint.prim} breaks under {force:.4g} N and {torque:.4g} N m"))
+                bears = force > joint.force or torque > joint.torque
+                how = f"breaks under {force:.4g} N and {torque:.4g} N m" if bears else "lets go"
+                found.append((joint.prim, f"{joint.prim} {how}"))
         return found
 
     def departures(self, state: Any) -> list[tuple[str, str]]:

@@ -18,13 +18,15 @@ class Entry:
     """The sums of W worlds since the last entry, each with its own axis first.
 
     `impulse` (W, bodies, 6) [N s, N m s about the centre of mass] and `work` (W, bodies) [J] are those of
-    `State.body_f`, by the model's bodies; `control` is what of the impulse is the controller's. `drives` (W,) is the
+    `State.body_f`, by the model's bodies; `control` and `scheduled` are what of the impulse is
+    the controller's and schedules'. `drives` (W,) is the
     work of drives and joint forces on the bodies [J], and `unsure` (W,) how far it may be from that; `effort` (W, dofs)
     is what each degree of freedom's drive gives now [N m or N].
     """
 
     impulse: np.ndarray
     control: np.ndarray
+    scheduled: np.ndarray
     work: np.ndarray
     drives: np.ndarray
     unsure: np.ndarray
@@ -40,22 +42,26 @@ class Ledger:
 
     Attributes:
         control: What of the bodies' force a controller gives, where there is one.
+        scheduled: What of it schedules give, likewise.
+        last: What each degree of freedom's drive gave last, which the change in a step is from [N m or N].
     """
 
     def __init__(self, model: Any, observables: Any | None) -> None:
         self.worlds = max(1, model.world_count)
         self.model, self.observables, self._packed = model, observables, Packed(model.device)
         self.control: Any | None = None
+        self.scheduled: Any | None = None
         self.bodies, self.dofs = model.body_count, model.joint_dof_count
         with wp.ScopedDevice(model.device):
             self._twist = wp.zeros(model.body_count, dtype=wp.spatial_vector)
             self._rate = wp.zeros(model.joint_dof_count, dtype=wp.float32)
             self._impulse: Any = wp.zeros(self.bodies, dtype=wp.spatial_vector)
             self._controlled: Any = wp.zeros(self.bodies, dtype=wp.spatial_vector)
+            self._by_schedule: Any = wp.zeros(self.bodies, dtype=wp.spatial_vector)
             self._work = wp.zeros(self.bodies, dtype=wp.float32)
             self._drives = wp.zeros(self.dofs, dtype=wp.float32)
             self._unsure = wp.zeros(self.dofs, dtype=wp.float32)
-            self._last = wp.zeros(self.dofs, dtype=wp.float32)
+            self.last = wp.zeros(self.dofs, dtype=wp.float32)
             self._none = wp.zeros(model.joint_dof_count, dtype=wp.float32)
 
     def before(self, state: Any) -> None:
@@ -73,14 +79,11 @@ class Ledger:
             outputs=[self._impulse, self._work],
             changing=(force, state.body_qd, dt),
         )
-        if self.control is not None:
-            self._packed.launch(
-                accumulate_control,
-                dim=self.bodies,
-                inputs=[self.control, dt],
-                outputs=[self._controlled],
-                changing=(self.control, dt),
-            )
+        for part, sums in ((self.control, self._controlled), (self.scheduled, self._by_schedule)):
+            if part is not None:
+                self._packed.launch(
+                    accumulate_control, dim=self.bodies, inputs=[part, dt], outputs=[sums], changing=(part, sums, dt)
+                )
         if not self.dofs:
             return
         effort = self._none if self.observables is None else self.observables.qfrc_actuator
@@ -88,7 +91,7 @@ class Ledger:
             accumulate_drive,
             dim=self.dofs,
             inputs=[effort, control.joint_f, self.model.joint_armature, self._rate, state.joint_qd, dt],
-            outputs=[self._last, self._drives, self._unsure],
+            outputs=[self.last, self._drives, self._unsure],
             changing=(effort, control.joint_f, state.joint_qd, dt),
         )
 
@@ -104,7 +107,7 @@ class Ledger:
         if steps.twists is not None:
             mean = 0.5 * (steps.twists[:-1] + steps.twists[1:])
             self._work.numpy()[:] += dt * np.einsum("sbi,bi->b", mean, push)
-        dofs, last, effort = steps.dofs, self._last.numpy(), steps.efforts
+        dofs, last, effort = steps.dofs, self.last.numpy(), steps.efforts
         change = np.diff(effort, axis=0, prepend=last[None, dofs])
         mean, gain = 0.5 * (steps.rates[:-1] + steps.rates[1:]), np.diff(steps.rates, axis=0)
         given = effort - 0.5 * change + control.joint_f.numpy()[dofs]
@@ -125,9 +128,9 @@ class Ledger:
         stiffness, strength = (
             array.numpy()[dofs] for array in (self.model.joint_target_ke, self.model.joint_effort_limit)
         )
-        last = self._last.numpy()
+        last = self.last.numpy()
         last[dofs] = np.clip(last[dofs] + stiffness * moved, -strength, strength)
-        self._last.assign(last)
+        self.last.assign(last)
 
     def retarget_on_device(self, dofs: Any, moved: Any) -> None:
         """The same by a kernel, without a copy to the host; Warp's arrays (W, n)."""
@@ -135,7 +138,7 @@ class Ledger:
             shift_effort,
             dim=dofs.shape,
             inputs=[dofs, moved, self.model.joint_target_ke, self.model.joint_effort_limit],
-            outputs=[self._last],
+            outputs=[self.last],
             device=self.model.device,
         )
 
@@ -145,6 +148,7 @@ class Ledger:
         entry = Entry(
             self._by_world(self._impulse, 6),
             self._by_world(self._controlled, 6),
+            self._by_world(self._by_schedule, 6),
             self._by_world(self._work),
             self._by_world(self._drives).sum(axis=1),
             self._by_world(self._unsure).sum(axis=1),
@@ -160,8 +164,8 @@ class Ledger:
     def clear(self) -> None:
         """Forget the sums, and the last effort: the run starts anew."""
         self._empty()
-        self._last.zero_()
+        self.last.zero_()
 
     def _empty(self) -> None:
-        for array in (self._impulse, self._controlled, self._work, self._drives, self._unsure):
+        for array in (self._impulse, self._controlled, self._by_schedule, self._work, self._drives, self._unsure):
             array.zero_()

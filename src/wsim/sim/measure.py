@@ -39,7 +39,7 @@ def measure(built: Built, state: Any, rigid: RigidBodies | None, fluid: SolverSP
         scalars["contact/penetration"] = deepest
         scalars.update(_body_energy(built, body_q, body_qd))
         if rigid:
-            scalars.update({name: float(value[0]) for name, value in rigid.breakage().items()})
+            scalars.update({name: float(value[0]) for name, value in (rigid.breakage() | rigid.began()).items()})
         if built.world.springs:
             scalars["energy/potential_springs"] = _spring_energy(built, body_q, body_qd)
         if rigid:
@@ -84,6 +84,8 @@ def applied_of(built: Built, ledger: Ledger, entry: Entry) -> dict[str, Array]:
     applied["applied_work"] = entry.work[:, built.bodies].astype(np.float32)
     if ledger.control is not None:
         applied["control_impulse"] = entry.control[:, built.bodies, :3].astype(np.float32)
+    if ledger.scheduled is not None:
+        applied["scheduled"] = entry.scheduled[:, built.bodies].astype(np.float32)
     return applied
 
 

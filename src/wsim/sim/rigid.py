@@ -22,6 +22,7 @@ from wsim.sim.kinematic import Kinematic
 from wsim.sim.ledger import Ledger
 from wsim.sim.ledger_notes import StepNotes
 from wsim.sim.pressed import Pressed
+from wsim.sim.schedules import Schedules
 from wsim.sim.ties import ties_of
 from wsim.sim.time_step import is_overdamped
 from wsim.solvers.breaking import Breakable
@@ -128,8 +129,13 @@ class RigidBodies:
         self.observables: Any = self.solver.observables(kinds) if kinds else None
         self._kinematic = Kinematic(model, world, dt)
         self.pressed = Pressed(model, self.solver, self.on_c)
-        pushed = driven or controlled or model.particle_count > 0
+        self.schedules: Schedules | None = None
+        if world.schedules:
+            self.schedules = Schedules(model, worlds, self.solver, [joint.prim for joint in self.breakable], dt)
+        pushed = driven or controlled or bool(world.schedules) or model.particle_count > 0
         self.ledger = Ledger(model, self.observables if driven else None) if pushed else None
+        if self.ledger and self.schedules and self.schedules.pushes:
+            self.ledger.scheduled = self.schedules.given
         self._notes: StepNotes | None = None
         if self.ledger and self.on_c and model.particle_count == 0:
             notes = StepNotes(model, self.solver)
@@ -137,6 +143,8 @@ class RigidBodies:
 
     def step(self, state_in: Any, state_out: Any, control: Any, dt: float) -> None:
         """Advance the bodies by `dt` [s] under gravity, contacts, joints and `state_in.body_f`."""
+        if self.schedules and self.ledger:
+            self.schedules.before(state_in, control, self.ledger.last)
         self._kinematic.before(state_in)
         if self.ledger:
             self.ledger.before(state_in)
@@ -144,6 +152,8 @@ class RigidBodies:
         if self.ledger:
             self.ledger.after(state_in.body_f, state_out, control, dt)
         self._kinematic.after(state_out)
+        if self.schedules:
+            self.schedules.after(state_out)
         if not self.on_c:
             wp.launch(
                 accumulate_overflow,
@@ -156,7 +166,8 @@ class RigidBodies:
     @property
     def alone(self) -> bool:
         """Whether nothing but the solver reads or writes the state between two turns of others."""
-        return self.on_c and self._kinematic.idle and (self.ledger is None or self._notes is not None)
+        idle = self._kinematic.idle and self.schedules is None
+        return self.on_c and idle and (self.ledger is None or self._notes is not None)
 
     def steps(self, state: Any, control: Any, dt: float, count: int) -> None:
         """Advance by `count` steps of `dt` [s] if the bodies are `alone`, in one go where books can be kept of it."""
@@ -199,6 +210,8 @@ class RigidBodies:
                 sums.clear()
         if self.ledger:
             self.ledger.clear()
+        if self.schedules:
+            self.schedules.reset(state)
         if not self.on_c:
             self.overflow_seen.zero_()
 
@@ -216,6 +229,10 @@ class RigidBodies:
             found |= {f"broken{name}": broken[:, k].astype(np.float64)}
             found |= {f"force{name}": load[:, k, 0], f"torque{name}": load[:, k, 1]}
         return found
+
+    def began(self) -> dict[str, np.ndarray]:
+        """When the clocks of schedules with events began, by name, (W,) [s]; -1 for one that waits."""
+        return self.schedules.began() if self.schedules else {}
 
     def problems(self) -> list[str]:
         """What the solver warned of since the start: each fails the run."""

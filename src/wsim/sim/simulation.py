@@ -28,6 +28,7 @@ from wsim.sim.entering import entered
 from wsim.sim.events import Events
 from wsim.sim.framing.frame import write_views
 from wsim.sim.framing.motion import MotionLog
+from wsim.sim.joint_paths import JointPathController
 from wsim.sim.measure import measure
 from wsim.sim.model import build_batch, build_model
 from wsim.sim.perturb import perturb
@@ -36,7 +37,6 @@ from wsim.sim.policies import controller_of, launch_all
 from wsim.sim.result import SimulationResult
 from wsim.sim.rigid import RigidBodies
 from wsim.sim.rope_ways import lost_ropes
-from wsim.sim.schedules import ScheduleController
 from wsim.sim.sensors import Sensors, sees
 from wsim.sim.starts import start
 from wsim.sim.turns import Controller, Turns
@@ -118,7 +118,7 @@ class Simulation:
                 self.model,
                 self.built.worlds,
                 self.dt,
-                controller is not None or bool(self.world.policies or self.world.schedules or self.world.reaches),
+                controller is not None or bool(self.world.policies or self.world.joint_paths or self.world.reaches),
                 self.built.breakable,
                 self.built.surfaces,
                 self.built.cylinders,
@@ -142,8 +142,8 @@ class Simulation:
         ]
         for policy in self.policies:
             self._turns.add(policy, policy.interval)
-        if self.world.schedules or self.world.reaches:
-            schedules = ScheduleController(self.model, self.built.worlds, self.dt)
+        if self.world.joint_paths or self.world.reaches:
+            schedules = JointPathController(self.model, self.built.worlds, self.dt)
             self._turns.add(schedules, schedules.interval)
         if controller is not None:  # after these: it sees what they set
             self._turns.add(controller, control_interval)

@@ -50,7 +50,9 @@ class Tracks:
         self.time[frame] = self.simulation.time
         if self.bodies:
             self.bodies.take(frame)
-        for name, values in self.simulation.rigid.breakage().items() if self.simulation.rigid else ():
+        for name, values in (
+            (self.simulation.rigid.breakage() | self.simulation.rigid.began()).items() if self.simulation.rigid else ()
+        ):
             self._scalars.setdefault(name, np.zeros((self.count, len(self.time))))[:, frame] = values
         for tracks in (self._wet, self._pushed):
             if tracks:

@@ -90,6 +90,11 @@ class BreakingC:
         torque = np.cross(arm, forces[1] - forces[0])
         return float(np.linalg.norm(forces[0] + forces[1])), float(np.linalg.norm(torque))
 
+    def release(self, data: Any, joint: int) -> None:
+        """Let a joint go, whatever it bears."""
+        self.broken[0, joint] = True
+        data.eq_active[list(self.constraints[joint])] = 0
+
     def clear(self, data: Any) -> None:
         """Mend all joints."""
         self.broken[:], self.load[:] = False, 0.0
@@ -108,6 +113,7 @@ class BreakingWarp:
     `strength` is (N, joints, 2), N = 1 where all worlds are alike.
 
     Attributes:
+        constraint: (joints, 2), MuJoCo's constraints of each, the second -1 where there is one alone.
         anew: (worlds,), whether something broke since the last `begin`.
         again: (1,), whether anything did in the last solution, so that others may be relieved by the next.
     """
@@ -115,7 +121,7 @@ class BreakingWarp:
     def __init__(self, model: Any, constraints: Sequence[Sequence[int]], strength: Array, worlds: int) -> None:
         count = len(constraints)
         pairs = np.array([[own[0], own[1] if len(own) == POINTS else -1] for own in constraints], dtype=np.int32)
-        self._constraint = wp.array(pairs, dtype=wp.int32)
+        self.constraint = wp.array(pairs, dtype=wp.int32)
         self._strength = wp.array(np.minimum(strength, 1e30).astype(np.float32), dtype=wp.float32)
         self._own = wp.array(pairs[pairs >= 0], dtype=wp.int32)
         self._now = wp.zeros((worlds, count), dtype=wp.spatial_vector)
@@ -148,7 +154,7 @@ class BreakingWarp:
             break_worst,
             dim=data.nworld,
             inputs=[
-                self._constraint, self._strength, self._row, model.eq_type, self._now, share, self._blown,
+                self.constraint, self._strength, self._row, model.eq_type, self._now, share, self._blown,
                 self._struck, int(struck),
             ],
             outputs=[self.again, self.anew, self.broken, self.load, data.efc.D, data.eq_active],
@@ -171,7 +177,7 @@ class BreakingWarp:
             bear,
             dim=self.broken.shape,
             inputs=[
-                self._constraint, self._row, model.eq_type, model.eq_data, model.eq_obj1id, data.xmat, efc.force,
+                self.constraint, self._row, model.eq_type, model.eq_data, model.eq_obj1id, data.xmat, efc.force,
             ],
             outputs=[self._now],
         )  # fmt: skip

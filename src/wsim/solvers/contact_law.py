@@ -31,6 +31,7 @@ the surface in truth: here by the factor sqrt(1 - (F / mu N)^2).
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -92,6 +93,7 @@ class ContactLawC:
         self.breaking, self.drives, self.flight = breaking, drives, flight
         self.impulses: ContactImpulsesC | None = None  # where somebody wants them summed
         self.ties: TieImpulsesC | None = None  # likewise
+        self.told: Callable[[Any], None] | None = None  # looks at the contacts of each step that is solved
         self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
         self.touching, self.cylinders, self._bow = touching, cylinders, np.zeros(0)
         self.classes, self.law, self.curvature = surfaces.classes[0], surfaces.law[0], surfaces.curvature[0]
@@ -221,6 +223,8 @@ class ContactLawC:
                 self._implicit(data)
                 if self.impulses is not None:
                     self.impulses.add(data, model.opt.timestep)
+                if self.told is not None:
+                    self.told(data)
                 self.flight.fly(model.opt.timestep)
             if smooth.any():
                 self.smooth_steps.take(data, smooth)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -65,6 +66,7 @@ class ContactLawWarp:
         self._breaking, self._drives, self._at_once = breaking, drives, False
         self._touching, self._cylinders = touching, cylinders
         self.impulses: ContactImpulsesWarp | None = None  # where somebody wants them summed
+        self.told: Callable[[Any], None] | None = None  # looks at the contacts of each solution
         groups = tied_groups(mujoco, host)
         moves_as_one = np.zeros(host.nbody, dtype=int)
         if smooth:
@@ -74,7 +76,7 @@ class ContactLawWarp:
         wp.load_module(slips, device=data.qpos.device)  # before a graph is captured: a first step may touch nothing
         with wp.ScopedDevice(data.qpos.device):
             self._geom_class = wp.array(surfaces.classes, dtype=int)
-            self._law = wp.array(surfaces.law, dtype=wp.vec3)
+            self.law = wp.array(surfaces.law, dtype=wp.vec3)
             self._curvature = wp.array(surfaces.curvature, dtype=float)
             self._target = wp.zeros(data.naconmax, dtype=float)
             self._blow = wp.zeros(data.naconmax, dtype=float)
@@ -129,6 +131,8 @@ class ContactLawWarp:
         self._solve_last(model, data)
         if self.impulses is not None:
             self.impulses.add(data, h)
+        if self.told is not None:
+            self.told(data)
         self._implicit(model, data)
         self._flight.fly(h)
         if self._smooth_steps:
@@ -180,6 +184,8 @@ class ContactLawWarp:
             self._breaking.add_blow(model, data, share)
         elif self.impulses is not None:
             self.impulses.add(data, h)
+        if self.told is not None and not self._at_once:
+            self.told(data)
         self._flight.jump(search, model.opt.timestep)
         self._mujoco_warp.make_constraint(model, data)
         self._look(model, data, instant=True)
@@ -276,7 +282,7 @@ class ContactLawWarp:
             dim=data.naconmax,
             inputs=[
                 data.nacon, contact.worldid, contact.geom, contact.dist, contact.efc_address, data.efc.vel,
-                model.opt.timestep, self._bow, self._geom_class, self._law, instant, config.most_blows, config.steady,
+                model.opt.timestep, self._bow, self._geom_class, self.law, instant, config.most_blows, config.steady,
                 config.threshold, config.settle_time, config.settle_speed,
             ],
             outputs=[self._search, self._seeking],
@@ -309,7 +315,7 @@ class ContactLawWarp:
             dim=data.naconmax,
             inputs=[
                 data.nacon, contact.worldid, contact.geom, contact.dist, contact.efc_address, contact.dim, efc.vel, h,
-                self._bow, self._geom_class, model.geom_bodyid, self._law, model.geom_type, self._curvature,
+                self._bow, self._geom_class, model.geom_bodyid, self.law, model.geom_type, self._curvature,
                 data.geom_xmat, contact.frame, self._search, instant, self._at_once, config.steady, self._free,
                 self._mechanism, self._touched_for, flight.row, flight.since, *self._jacobian(model, efc),
                 config.threshold, config.settle_time, config.settle_speed, config.smallest_friction,

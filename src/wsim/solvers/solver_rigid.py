@@ -88,6 +88,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self.mj_model.opt.tolerance = tolerance_in_c(self.mj_model, self.contact_config)
         self._differ = len(surfaces.classes) > 1
         of_geoms = surfaces.taken(self.mjc_geom_to_newton_shape.numpy())
+        self._classes = of_geoms.classes
         reach = np.full(self.mj_model.ngeom, 0.5 * self.contact_config.reach)
         self.mj_model.geom_margin[:] = reach
         self.mj_model.body_margin[:] = reach[0] if len(reach) else 0.0
@@ -283,6 +284,27 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             mass = self.model.body_mass.numpy()[newtons, None]
             found[newtons] = np.concatenate([mass * gained[0, :, 0], gained[0, :, 1]], axis=1)
         return found
+
+    def tell_contacts(self, told: Callable[[Any], None]) -> None:
+        """Have something look at MuJoCo's data whenever the contacts of a step are solved."""
+        law = self._law_c if self.use_mujoco_cpu else self._law_warp
+        if law is not None:  # else nothing ever touches
+            law.told = told
+
+    def classes_of(self, geoms: Array) -> Array:
+        """The classes of surfaces of some geoms, which worlds have alike."""
+        return np.unique(self._classes[0, geoms])
+
+    def friction_law(self, worlds: int) -> Any:
+        """Friction, restitution and rolling of two classes, to be changed between steps: of one world in C an array
+        (classes, classes, 3), else Warp's (worlds, classes, classes)."""
+        if self.use_mujoco_cpu:
+            return self._law_c.law
+        law = self._law_warp
+        assert law is not None  # a pair that rubs may touch
+        rows = law.law.numpy()
+        law.law = wp.array(rows[np.arange(worlds) % len(rows)], dtype=wp.vec3)
+        return law.law
 
     def mend(self) -> None:
         """Make all joints whole that broke."""

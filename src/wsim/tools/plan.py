@@ -20,8 +20,9 @@ if TYPE_CHECKING:
     from wsim.plan.schema import Joint, Plan, PlanObject, Vec3
 
 Part = Literal[
-    "all", "objects", "relations", "joints", "cords", "contacts", "cameras", "objectives", "assumptions", "steps"
-]
+    "all", "objects", "relations", "joints", "cords", "contacts", "schedules", "cameras", "objectives", "assumptions",
+    "steps",
+]  # fmt: skip
 SIDE_NAME = "plan.json.new"
 
 
@@ -93,6 +94,7 @@ def _show(plan: Plan, part: Part, name: str) -> list[str]:
         "joints": _joints,
         "cords": _cords,
         "contacts": _contacts,
+        "schedules": _schedules,
         "cameras": _cameras,
         "assumptions": _assumptions,
         "steps": _steps,
@@ -101,7 +103,7 @@ def _show(plan: Plan, part: Part, name: str) -> list[str]:
         return parts[part](plan, name) or [f"no {part}" + (f" that name {name}" if name else "")]
     run = plan.simulation
     lines = [f"{plan.title}: {number(run.duration)} s at {number(run.frame_rate)} frames/s", *_picture(plan)]
-    for key in ("objects", "relations", "objectives", "joints", "cords", "contacts", "cameras"):
+    for key in ("objects", "relations", "objectives", "joints", "cords", "contacts", "schedules", "cameras"):
         lines += parts[key](plan, name)
     rest = [f"{len(rows)} {key}" for key, rows in (("assumptions", plan.assumptions), ("steps", plan.steps)) if rows]
     if not name:
@@ -223,6 +225,25 @@ def _contacts(plan: Plan, name: str) -> list[str]:
     return table(("contact of", "and", "friction", "restitution", "rolling"), rows) if rows else []
 
 
+def _schedules(plan: Plan, name: str) -> list[str]:
+    rows = []
+    for each in plan.schedules:
+        of = [each.of] if isinstance(each.of, str) else list(each.of)
+        if not _about(name, *of):
+            continue
+        keys = zip(each.times, each.values or ("",) * len(each.times), strict=True)
+        said = "; ".join(f"{number(time)} s: {_value(value)}".rstrip(": ") for time, value in keys)
+        event = "" if each.after is None else each.after.model_dump_json()
+        rows.append([each.name, " and ".join(of), each.quantity, said, event])
+    return table(("schedule", "of", "quantity", "by time", "after"), rows) if rows else []
+
+
+def _value(value: float | tuple[float, ...] | str) -> str:
+    if isinstance(value, str):
+        return value
+    return number(value) if isinstance(value, float) else f"({', '.join(map(number, value))})"
+
+
 def _driven(joint: Joint) -> str:
     given = joint.drive.model_dump() if joint.drive else {}
     return ", ".join(f"{name} {number(value)}" for name, value in given.items() if value)
@@ -254,7 +275,8 @@ def _steps(plan: Plan, name: str) -> list[str]:
 
 TOOLS = (
     Tool(
-        "read_plan", "The plan: objects, where they are, joints, contacts, cameras and what must happen, as tables.",
+        "read_plan",
+        "The plan: objects, where they are, joints, contacts, schedules, cameras and what must happen, as tables.",
         ReadPlan, read_plan, narrow="ask for one part, or one object",
     ),
     Tool(

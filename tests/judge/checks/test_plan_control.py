@@ -7,7 +7,7 @@ from tests.judge.theory import ask, with_world
 from wsim.assets.policies import Observation, PolicySpec
 from wsim.judge.checks.run import CheckPlanControl
 from wsim.plan.schema import Actuation, FromRobot, Plan, PlanObject, Registration, Step
-from wsim.scene.world import Joint, Policy, Reach, Schedule
+from wsim.scene.world import Joint, JointPath, Policy, Reach
 
 SPEC = PolicySpec(joints=["hip"], rate=50.0, observations=[Observation(of="command")])
 STEP = Step(title="push", shows="control pushes the ball", controls=True)
@@ -67,7 +67,7 @@ TIMED = [
 REACH = Reach(
     prim="/World/arm/reaches/reach_0", link="/World/arm/hand", times=[1.0], positions=[(0.3, 0.0, 0.2)], straight=False
 )
-GRIP = Schedule(prim="/World/arm/joints/grip", times=[1.0, 2.0], positions=[0.03, 0.0])
+GRIP = JointPath(prim="/World/arm/joints/grip", times=[1.0, 2.0], positions=[0.03, 0.0])
 SLIDER = Joint(prim="/World/arm/joints/grip", kind="prismatic", parent="/World/arm/hand", child="/World/arm/finger")
 
 
@@ -84,14 +84,14 @@ def by_time(actuations, controlled=False, **stage):
 
 @pytest.mark.parametrize(("actuation", "kind"), TIMED)
 def test_what_a_plan_lets_a_robot_do_by_time_is_on_the_stage(actuation, kind):
-    stage = {"reaches": [REACH]} if kind == "reach" else {"schedules": [GRIP]}
+    stage = {"reaches": [REACH]} if kind == "reach" else {"joint_paths": [GRIP]}
     assert all(each.passed for each in by_time([actuation], **stage))
     for unlike in (
         {"reaches": [REACH.model_copy(update={"link": "/World/arm/wrist"})]},
         {"reaches": [REACH.model_copy(update={"positions": [(0.3, 0.0, 0.25)]})]},
         {"reaches": [REACH.model_copy(update={"times": [2.0]})]},
-        {"schedules": [GRIP.model_copy(update={"prim": "/World/other/joints/grip"})]},
-        {"schedules": [GRIP.model_copy(update={"positions": [0.0, 0.0]})]},
+        {"joint_paths": [GRIP.model_copy(update={"prim": "/World/other/joints/grip"})]},
+        {"joint_paths": [GRIP.model_copy(update={"positions": [0.0, 0.0]})]},
         {},
     ):
         (found,) = by_time([actuation], **unlike)
@@ -99,7 +99,7 @@ def test_what_a_plan_lets_a_robot_do_by_time_is_on_the_stage(actuation, kind):
         assert (found.target.kind, found.target.parameter) == ("controller", kind)
 
 
-@pytest.mark.parametrize("stage", [{"reaches": [REACH]}, {"schedules": [GRIP]}])
+@pytest.mark.parametrize("stage", [{"reaches": [REACH]}, {"joint_paths": [GRIP]}])
 def test_what_a_stage_does_by_time_is_the_plans(stage):
     (found,) = by_time([], **stage)
     assert not found.passed and "by time, and the plan does not" in found.message
@@ -109,7 +109,7 @@ def test_what_a_stage_does_by_time_is_the_plans(stage):
 def test_what_is_done_by_time_makes_no_control_legal():
     """A motion that is left off the stage is no reason for a program's own hands."""
     actuations = [actuation for actuation, _ in TIMED]
-    both = {"reaches": [REACH], "schedules": [GRIP]}
+    both = {"reaches": [REACH], "joint_paths": [GRIP]}
     assert all(each.passed for each in by_time(actuations, **both))
     for stage in (both, {"reaches": [REACH]}):
         assert not all(each.passed for each in by_time(actuations, controlled=True, **stage))

@@ -154,7 +154,7 @@ def _drifts(
     rate = length / (time[frames[:, -1]] - time[firsts])[at]
     steady = gone.min(axis=1) > EACH * length / INTERVALS
     steady &= (rate > np.maximum(CREEP, _soft(copies, touching, contacts, copy[at], at))) & (rate < 2.0 * STILL)
-    steady &= length > INTERVALS * rounding
+    steady &= (length > INTERVALS * rounding) & ~touching.changing[contacts.shapes].any(axis=1)
     steady &= rate > _behind(copies, copy[at], paths, (time[frames[:, -1]] - time[firsts])[at])
     relative, absolute = _turned(contacts, at, q)
     steady &= (relative < TURN) & (absolute < ROUND)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.evidence.motion import FLOAT32
+from wsim.judge.evidence.scheduled import Aims
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,9 +24,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
-def held(drive: Motor, position: Floats) -> Floats:
-    """What a drive holds as a spring does, at joint positions (T,) [J]."""
-    left = np.abs(drive.position - position)
+def held(drive: Motor, aim: Floats | float, position: Floats) -> Floats:
+    """What a drive holds as a spring does, aiming at a position, at joint positions (T,) [J]."""
+    left = np.abs(aim - position)
     if drive.max_effort is None or drive.stiffness <= 0.0:
         return np.asarray(0.5 * drive.stiffness * left**2)
     within = np.minimum(left, drive.max_effort / drive.stiffness)
@@ -43,7 +44,7 @@ def changes_hands(evidence: Evidence, rows: NDArray[np.intp]) -> float:
     for joint in evidence.world.joints:
         track, drive = evidence.joint(joint), joint.drive
         if drive is not None and track is not None and evidence.index(joint.child) in ours:
-            found += float(np.ptp(held(drive, track.position)))
+            found += float(np.ptp(held(drive, Aims.of(evidence, joint).position, track.position)))
     return found
 
 
@@ -58,7 +59,10 @@ def given_within(evidence: Evidence) -> Floats:
     for joint in evidence.world.joints:
         track, drive = evidence.joint(joint), joint.drive
         if drive is not None and track is not None:
-            found += held(drive, track.position)[:-1] + 0.25 * drive.damping * drive.velocity**2 * evidence.motion.h
+            aims = Aims.of(evidence, joint)
+            fastest = np.maximum(np.abs(aims.velocity[1:]), np.abs(aims.velocity[:-1]))
+            found += held(drive, aims.position, track.position)[:-1]
+            found += 0.25 * drive.damping * fastest**2 * evidence.motion.h
     return found
 
 
@@ -71,8 +75,10 @@ def resting(ties: RecordedTies, k: int) -> tuple[Floats, Floats]:
     drive, motion, at = joint.drive, ties.laws.motion, ties.laws.position(joint)
     if drive is None or at is None or drive.max_effort is not None or drive.stiffness <= 0.0:  # a damper holds nothing
         return np.zeros(len(motion.h)), np.full(len(motion.h), np.inf)
-    effort, ours = drive.stiffness * (drive.position - at), motion.unit == motion.unit[ties.pairs[k][1]]
-    moved = (ties.struck | motion.meets)[:, ours].any(axis=1) | (drive.velocity != 0.0)
+    aims = ties.laws.aims(joint)
+    effort, ours = drive.stiffness * (aims.position - at), motion.unit == motion.unit[ties.pairs[k][1]]
+    moved = (ties.struck | motion.meets)[:, ours].any(axis=1) | (aims.mean_velocity != 0.0)
+    moved |= aims.jumps | (np.diff(aims.position) != 0.0)
     swings = settled(motion.h, at, ties.laws.rate(joint), drive, ties.laws.loose(joint))
     rounding = 8.0 * FLOAT32 * drive.stiffness * float(max(np.pi, np.abs(motion.com).max()))
     return 0.5 * (effort[1:] + effort[:-1]), np.where(moved, np.inf, swings + rounding)

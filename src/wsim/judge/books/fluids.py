@@ -40,6 +40,8 @@ def fluid_impulse(recording: Recording) -> Floats | None:
     if recording.applied_impulse is None:
         return None
     impulse: Floats = np.asarray(recording.applied_impulse, dtype=np.float64)
+    if recording.scheduled is not None:
+        impulse = impulse - recording.scheduled[..., :3]
     if recording.control_impulse is not None:
         return impulse - recording.control_impulse
     return None if recording.metadata.get("controlled") else impulse

@@ -20,6 +20,7 @@ from wsim.judge.books.encounters import APART, Met, about, jumps, meets, near
 from wsim.judge.books.pressed import pushed_back
 from wsim.judge.books.touching import touching_of
 from wsim.judge.evidence.motion import FLOAT32
+from wsim.judge.evidence.scheduled import pushes
 from wsim.scene.contact import pair_law
 
 if TYPE_CHECKING:
@@ -106,7 +107,7 @@ def tells(evidence: Evidence) -> bool:
     recording, world = evidence.recording, evidence.world
     if world.combine != "smaller" or recording.metadata.get("velocities") == "differences":
         return False
-    return not (world.fluids or recording.metadata.get("controlled"))
+    return not (world.fluids or recording.metadata.get("controlled") or pushes(world))
 
 
 def pushed_out(approach: float, restitution: float, step: float) -> float:

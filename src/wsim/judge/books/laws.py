@@ -23,6 +23,7 @@ from wsim.judge.books.ways import Course, eased, off_the_way
 from wsim.judge.evidence.cords import track_of_spring
 from wsim.judge.evidence.joints import AXES, broken, track_of
 from wsim.judge.evidence.motion import FLOAT32
+from wsim.judge.evidence.scheduled import Aims
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -84,6 +85,7 @@ class Laws:
     def __init__(self, evidence: Evidence) -> None:
         self._evidence, self._motion = evidence, evidence.motion
         self._row = {body.prim: i for i, body in enumerate(evidence.world.bodies)}
+        self._aims: dict[str, Aims] = {}
         self._set = bool(evidence.recording.metadata.get("controlled"))
         self.springs = [self._spring(spring) for spring in evidence.world.springs]
         self.joints = {joint.prim: self._joint(joint) for joint in evidence.world.joints}
@@ -115,7 +117,21 @@ class Laws:
             if joint.drive is not None and self.joints[joint.prim]:
                 self._refine_drive(joint, self.joints[joint.prim][0], total, wrong)
                 self._on_the_way(joint, self.joints[joint.prim][0], total, wrong)
+        for joint in self._evidence.world.joints:
+            self._by_schedule(joint, total, wrong)
         return total, wrong
+
+    def _by_schedule(self, joint: Joint, total: Floats, wrong: Floats) -> None:
+        """What a schedule pushes a joint with beside its drive."""
+        if joint.kind not in ("revolute", "prismatic") or not self.aims(joint).effort.any():
+            return
+        mean, along = self.aims(joint).effort, self._along(joint)
+        unit = self._law(*along.acting(np.ones(len(along.rate))), (0.0, 0.0), along.loose)
+        for row, way in ((unit.one, unit.back), (unit.two, unit.wrench)):
+            if row >= 0:
+                total[:, row] += mean[:, None] * 0.5 * (way[1:] + way[:-1])
+                turned = 0.5 * np.linalg.norm(np.diff(way, axis=0).reshape(-1, 2, 3), axis=2) + bent(way)
+                wrong[:, row] += np.abs(mean)[:, None] * turned
 
     def _refine_drive(self, joint: Joint, law: Law, total: Floats, wrong: Floats) -> None:
         """What the mean of both ends leaves of a drive's effort where it is below its full strength.
@@ -187,11 +203,17 @@ class Laws:
         """How old what a step takes of drives and springs may be [s]; one of higher order takes their mean."""
         return 0.0 if self._evidence.world.stepped == "neither" else self._motion.step
 
+    def aims(self, joint: Joint) -> Aims:
+        """What a joint's drive aims at, by schedules too."""
+        if joint.prim not in self._aims:
+            self._aims[joint.prim] = Aims.of(self._evidence, joint)
+        return self._aims[joint.prim]
+
     def effort(self, joint: Joint) -> Floats:
         """What the law of a joint's drive gives at each frame, as much as it can, (T,) [N or N m]."""
         drive, track = joint.drive, self._evidence.joint(joint)
         assert drive is not None and track is not None
-        return _effort(drive, track.position, self.rate(joint))
+        return _effort(drive, self.aims(joint), track.position, self.rate(joint))
 
     def mean_of_drive(self, joint: Joint, *, late: bool = True) -> tuple[Floats, Floats, Bools] | None:
         """What a drive gives in the mean of each interval, blow or none, by how much that may be off, and where it is
@@ -202,14 +224,18 @@ class Laws:
         drive, track = joint.drive, self._evidence.joint(joint)
         if drive is None or track is None:
             return None
-        h, left, rate = self._motion.h, track.position - drive.position, self.rate(joint)
+        h, rate, aims = self._motion.h, self.rate(joint), self.aims(joint)
         step = self._late if late else 0.0
-        mean, may = jolts.mean_force((drive.stiffness, drive.damping), left, rate, h, step)
-        most = drive.stiffness * np.abs(left) + drive.damping * np.abs(rate - drive.velocity)
+        mean, may = jolts.mean_force((drive.stiffness, drive.damping), track.position, rate, h, step)
+        left = track.position - aims.position
+        most = drive.stiffness * np.abs(left) + drive.damping * np.abs(rate - aims.velocity)
         below = np.maximum(most[1:], most[:-1]) < (np.inf if drive.max_effort is None else drive.max_effort)
         if drive.max_effort is not None:
-            below &= jolts.between(left, rate, h)
-        return drive.damping * drive.velocity - mean, may, below
+            below &= jolts.between(track.position, rate, h) & ~aims.jumps
+        # A step has the mean of its aims; what its effort is late by goes with them.
+        moved = drive.stiffness * np.abs(np.diff(aims.position)) + drive.damping * np.abs(np.diff(aims.velocity))
+        may = may + np.minimum(step / h, 1.0) * moved
+        return drive.stiffness * aims.mean_position + drive.damping * aims.mean_velocity - mean, may, below
 
     def _refine(self, spring: Spring, law: Law, total: Floats, wrong: Floats) -> None:
         """What the mean of both ends leaves of a spring's force: of its size, and as its way turns.
@@ -338,21 +364,22 @@ class Laws:
         holds = ~broken(self._evidence, joint)[1:] & (joint.armature == 0.0)
         laws = []
         if joint.drive is not None:
-            laws = [self._told_by_way(joint, self._drive(joint.drive, along, track.position, holds))]
+            laws = [self._told_by_way(joint, self._drive(joint, joint.drive, along, track.position, holds))]
         laws += [self._friction(joint.friction, along, holds)] if joint.friction > 0.0 else []
         if joint.armature and (joint.drive is None or laws[0].mean is None):  # what its rotor takes is not told
             return [replace(law, most=np.inf) for law in laws]
         return laws
 
-    def _drive(self, drive: Motor, along: _Along, position: Floats, holds: Bools) -> Law:
-        effort = _effort(drive, position, along.rate)
+    def _drive(self, joint: Joint, drive: Motor, along: _Along, position: Floats, holds: Bools) -> Law:
+        aims = self.aims(joint)
+        effort = _effort(drive, aims, position, along.rate)
         most = np.inf if drive.max_effort is None else drive.max_effort
         full = np.where(np.abs(effort) >= most, np.sign(effort), 0.0)
         law = self._law(*along.acting(effort), (drive.stiffness, drive.damping), along.loose)
         # All of an interval at its full strength it is known; where it comes to that, or leaves it, it is not.
         strained, told = full[1:] * full[:-1] > 0.0, drive.told and not self._set
-        known = ((law.known & (full[1:] == full[:-1])) | strained) & holds & told
-        error = np.where(strained, eased(drive, position, along.rate, self._motion.h), law.error)
+        known = ((law.known & (full[1:] == full[:-1])) | strained) & holds & told & ~aims.jumps
+        error = np.where(strained, eased(drive, aims, position, along.rate, self._motion.h), law.error)
         return replace(law, known=known, error=error, most=most if told else np.inf)
 
     @property
@@ -436,8 +463,8 @@ class Laws:
         return Law(two, one, rows[0], rows[1], swing / 12.0, swing < RESOLVED**2)
 
 
-def _effort(drive: Motor, position: Floats, rate: Floats) -> Floats:
+def _effort(drive: Motor, aims: Aims, position: Floats, rate: Floats) -> Floats:
     """What a drive's law gives at joint positions and rates (T,), as much as it can [N or N m]."""
     most = np.inf if drive.max_effort is None else drive.max_effort
-    asked = drive.stiffness * (drive.position - position) + drive.damping * (drive.velocity - rate)
+    asked = drive.stiffness * (aims.position - position) + drive.damping * (aims.velocity - rate)
     return np.asarray(np.clip(asked, -most, most))

@@ -26,6 +26,7 @@ from wsim.judge.books.laws import Laws
 from wsim.judge.books.phases import COARSEST
 from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.evidence.carriers import carried_work, carriers, leads
+from wsim.judge.evidence.scheduled import fastest
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -202,11 +203,11 @@ def late(contacts: RecordedContacts) -> Floats:
 
 def _belts(contacts: RecordedContacts, loose: NDArray[np.bool_]) -> list[tuple[int, Floats, Floats]]:
     """Of all contacts of a belt with a body: who gets the work, the impulses and the belt's own velocity, (T, 3)."""
-    track, frames, found = contacts.track, len(contacts.given[0]), []
+    track, frames, found, world = contacts.track, len(contacts.given[0]), [], contacts.world
     for side, sign in ((0, -1.0), (1, 1.0)):
         own, other = contacts.body[:, side], contacts.body[:, 1 - side]
         gets = np.where((other >= 0) & loose[other], other, np.where((own >= 0) & loose[own], own, -1))
-        runs = np.array([any(shape.surface_velocity) for shape in contacts.shapes], dtype=bool)
+        runs = np.array([any(fastest(world, shape)) for shape in contacts.shapes], dtype=bool)
         ours = runs[track.pair[:, side]] & (gets >= 0)
         for k, to in np.unique(np.stack([track.pair[:, side], gets], axis=1)[ours], axis=0).tolist():
             rows = np.flatnonzero(ours & (track.pair[:, side] == k) & (gets == to))

@@ -70,6 +70,8 @@ class Losses:
         recording, world = evidence.recording, evidence.world
         if recording.contacts is None or not told(evidence) or world.fluids or recording.metadata.get("controlled"):
             return None
+        if world.schedules:
+            return None  # what they give within a step was not measured
         about = recording.metadata
         if str(about.get("device", "cpu")) != "cpu" or int(about.get("world_count") or 1) > 1:
             return None  # what single precision loses was not measured

@@ -177,6 +177,7 @@ class Meeting:
         lasts = (slowest > np.maximum(self._creep(every, copy), change)) & (
             np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then
         )
+        lasts &= ~self._touching.changing[every.shapes].any(axis=1)
         lasts &= ~_any(self.caught[ks], every) & keeps_way(every, slowest, landed)
         ways = np.stack([own / np.maximum(speed, 1e-300)[:, None], then / np.maximum(speed_then, 1e-300)[:, None]])
         ways[1] += ways[0]

@@ -19,6 +19,7 @@ from wsim.judge.books.recorded_ties import RecordedTies
 from wsim.judge.books.sampled import sampled
 from wsim.judge.books.sharing import UPRIGHT, bend, lever, share
 from wsim.judge.evidence.motion import FLOAT32
+from wsim.judge.evidence.scheduled import belt, fastest, friction
 from wsim.recording.contacts import shapes_of
 from wsim.scene.contact import pair_law
 
@@ -58,7 +59,7 @@ class RecordedContacts:
         self._evidence, self.track = evidence, track
         ties = evidence.recording.ties
         self.ties = RecordedTies(evidence, ties) if ties is not None else None
-        self.shapes = shapes_of(evidence.world)
+        self.world, self.shapes = evidence.world, shapes_of(evidence.world)
         bodies = [i for i, body in enumerate(evidence.world.bodies) for _ in body.shapes]
         self._owner = np.array(bodies + [-1] * (len(self.shapes) - len(bodies)), dtype=np.intp)
 
@@ -134,7 +135,13 @@ class RecordedContacts:
         pairs, which = np.unique(self.track.pair, axis=0, return_inverse=True)
         laws = [pair_law(world, self.shapes[a], self.shapes[b]) for a, b in pairs.tolist()]
         each = np.array([(law.friction, law.rolling) for law in laws], dtype=np.float64).reshape(-1, 2)
-        return np.asarray(each[which.ravel()].T)
+        found = each[which.ravel()].T
+        for k, (a, b) in enumerate(pairs.tolist() if world.schedules else ()):
+            by_time = friction(self._evidence, self.shapes[a], self.shapes[b], laws[k].friction)
+            rows = np.flatnonzero(which.ravel() == k)
+            if by_time is not None and len(rows):
+                found[0, rows] = by_time[np.maximum(self.track.frame[rows] - 1, 0)]
+        return np.asarray(found)
 
     def rubs(self, normal: Floats, speed: Floats) -> Floats:
         """The least and the most that friction is of each row's push, as its slip and its turning share it, (2, n).
@@ -233,7 +240,7 @@ class RecordedContacts:
         found: Floats = self.speed(1) - self.speed(0)
         for side, sign in ((0, -1.0), (1, 1.0)):
             for k in np.unique(self.track.pair[:, side]):
-                if any(self.shapes[k].surface_velocity):
+                if any(fastest(self._evidence.world, self.shapes[k])):
                     ours = np.flatnonzero(self.track.pair[:, side] == k)
                     after = np.maximum(self.track.frame[ours], 1)
                     found[ours] += sign * self.belt(k)[np.stack([after - 1, after], axis=1)]
@@ -290,9 +297,8 @@ class RecordedContacts:
 
     def belt(self, k: int) -> Floats:
         """How the surface of shape k runs by itself, (T, 3) [m/s]."""
-        own, body = np.array(self.shapes[k].surface_velocity, dtype=np.float64)[None], self._owner[k]
-        found: Floats = np.repeat(own, len(self._evidence.time), axis=0)
-        return found if body < 0 or not own.any() else rotate(self._evidence.body_q[:, body, 3:], own)
+        own, body = belt(self._evidence, self.shapes[k]), self._owner[k]
+        return own if body < 0 or not own.any() else rotate(self._evidence.body_q[:, body, 3:], own)
 
     def gap(self, share: float) -> tuple[Floats, Floats]:
         """How far each row's place is from the surfaces that it is said to be of, and may be, (n,) each [m].

@@ -237,13 +237,16 @@ class RecordedTies:
         rounding = 8.0 * FLOAT32 * (drive.stiffness * self._extent(k) + drive.damping * np.abs(rate).max())
         known = (law.error < RESOLVED**2 / 12.0) & (full[1:] == full[:-1]) | (full[1:] * full[:-1] > 0.0)
         known &= ~broken(self._evidence, joint)[1:]
+        aims = self.laws.aims(joint)
+        if drive.max_effort is not None:
+            known &= ~aims.jumps
         mean, found = 0.5 * (pull[1:] + pull[:-1]), self.laws.mean_of_drive(joint)
         unsure = self._by_frames(pull) + np.where(full[1:] * full[:-1] > 0.0, law.error * np.abs(mean), 0.0)
         if found is not None:
             # What another drive shakes faster than frames tell is damped by how far it went, too.
             stray = jolts.strayed(at.position, rate, self.intervals)
             shaken = drive.damping * stray / self.intervals > unsure
-            hit = self._stuck[:, self.pairs[k][1]] | shaken
+            hit = self._stuck[:, self.pairs[k][1]] | shaken | aims.jumps
             may = found[1] + drive.stiffness * np.where(shaken, stray, 0.0)
             mean, unsure = (np.where(hit, *pair) for pair in ((found[0], mean), (may, unsure)))
             known &= found[2] | ~hit

@@ -98,7 +98,7 @@ def rolls(evidence: Evidence) -> list[Rolls]:
         span = slice(first, first + INTERVALS)
         calm = free & turning[first : first + INTERVALS + 1].all(axis=0) & ~odd[span].any(axis=0)
         spans += [(int(row), _asked(evidence, int(row), first)) for row in np.flatnonzero(calm)]
-    if not spans:
+    if not spans or Touching.of(evidence).changing.any():
         return []
     near = Near.of(evidence, sorted({frame for _, frames in spans for frame in frames}), free)
     rounds = rounding(evidence)

@@ -43,7 +43,7 @@ def thrown(evidence: Evidence, laws: Laws) -> Floats:
             continue
         given = np.abs(ties.drive[1:, k].astype(np.float64))
         far = np.sqrt(
-            (drive.position - track.position[:-1]) ** 2
+            (laws.aims(joint).position[:-1] - track.position[:-1]) ** 2
             + 2.0 * motion.kinetic[:-1, rows].sum(axis=1) / max(drive.stiffness, 1e-12)
         )
         most = (drive.stiffness + drive.damping * np.sqrt(drive.stiffness * laws.loose(joint)[:-1])) * far

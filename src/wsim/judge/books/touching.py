@@ -17,6 +17,7 @@ from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.judge.books.flats import flats
 from wsim.judge.books.meshes import NEAR, Triangles, colliding, radius_about, touching
 from wsim.judge.books.searching import Search
+from wsim.judge.evidence.scheduled import changes, fastest, roughest
 from wsim.scene.contact import Pair, pair_law, passing
 
 if TYPE_CHECKING:
@@ -115,7 +116,7 @@ class Touching:
         joined.worlds = [world for part in parts for world in part.worlds]
         joined.shapes = [shape for part in parts for shape in part.shapes]
         joined._pairs, joined._numbers = _NO_PAIRS
-        for name in ("_margin", "_row_of_shape", "_radii", "_own", "surface_velocity", "_searches"):
+        for name in ("_margin", "_row_of_shape", "_radii", "_own", "surface_velocity", "changing", "_searches"):
             joined.__dict__.pop(name, None)
         return joined
 
@@ -344,14 +345,24 @@ class Touching:
         return self._numbers[at]
 
     def _law(self, one: int, two: int) -> Pair:
-        world = self.worlds[one // max(len(self.shapes) // len(self.worlds), 1)]
-        return pair_law(world, self.shapes[one][2], self.shapes[two][2])
+        world, shapes = self._world_of(one), (self.shapes[one][2], self.shapes[two][2])
+        law = pair_law(world, *shapes)
+        return replace(law, friction=roughest(world, *shapes, law.friction)) if world.schedules else law
 
     @cached_property
     def surface_velocity(self) -> Floats:
         """Of each shape [m/s], in its body's axes, (shapes, 3)."""
-        stated = [shape.surface_velocity for _, _, shape in self.shapes]
+        stated = [fastest(self._world_of(k), shape) for k, (_, _, shape) in enumerate(self.shapes)]
         return np.array(stated, dtype=np.float64).reshape(-1, 3)
+
+    @cached_property
+    def changing(self) -> NDArray[np.bool_]:
+        """Whether a schedule changes how each shape's surface runs or rubs, (shapes,)."""
+        return np.array([changes(self._world_of(k), shape) for k, (_, _, shape) in enumerate(self.shapes)], dtype=bool)
+
+    def _world_of(self, k: int) -> World:
+        """The world that a shape is in."""
+        return self.worlds[k // max(len(self.shapes) // len(self.worlds), 1)]
 
 
 def touching_of(copies: Sequence[Evidence]) -> Touching:

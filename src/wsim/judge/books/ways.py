@@ -20,6 +20,7 @@ from wsim.judge.evidence.motion import FLOAT32
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.evidence.scheduled import Aims
     from wsim.scene.world import Motor
 
     Floats = NDArray[np.float64]
@@ -42,7 +43,7 @@ class Course:
     late: float  # the time step, which a rate may be told late by [s]
 
 
-def eased(drive: Motor, place: Floats, rate: Floats, h: Floats) -> Floats:
+def eased(drive: Motor, aims: Aims, place: Floats, rate: Floats, h: Floats) -> Floats:
     """The share of a drive's effort, at its most at both ends of an interval, that may be missing, (T - 1,).
 
     To give less it has to be asked for less, by as much as it is asked for beyond its most: its joint then goes by
@@ -51,6 +52,7 @@ def eased(drive: Motor, place: Floats, rate: Floats, h: Floats) -> Floats:
 
     Args:
         drive: Its law.
+        aims: What it aims at.
         place: Of its joint, (T,) [rad or m].
         rate: (T,).
         h: Lengths of the intervals, (T - 1,) [s].
@@ -58,7 +60,7 @@ def eased(drive: Motor, place: Floats, rate: Floats, h: Floats) -> Floats:
     if drive.max_effort is None or len(h) < 2:
         return np.zeros(len(h))
     stray = jolts.strayed(place, rate, h)
-    asked = np.abs(drive.stiffness * (drive.position - place) + drive.damping * (drive.velocity - rate))
+    asked = np.abs(drive.stiffness * (aims.position - place) + drive.damping * (aims.velocity - rate))
     beyond = np.minimum(asked[1:], asked[:-1]) - drive.max_effort - drive.stiffness * stray
     lasts = drive.damping * stray / h / np.maximum(beyond, 1e-12 * drive.max_effort)
     return np.asarray(2.0 * np.minimum(lasts, 1.0))

@@ -17,6 +17,7 @@ import numpy as np
 from wsim.judge.books.driven import held
 from wsim.judge.books.led import over
 from wsim.judge.books.recorded_ties import OWN
+from wsim.judge.evidence.scheduled import drive_is_set
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -78,6 +79,8 @@ def _between(evidence: Evidence, ties: RecordedTies, some: list[int]) -> tuple[F
 def _told(evidence: Evidence, ties: RecordedTies, k: int) -> tuple[Floats, Floats] | None:
     """The work of joint k's drive by its law, less what its rotor keeps; None where frames do not tell it."""
     joint, drive, spun = ties.joints[k], ties.joints[k].drive, _spun(ties, k)
+    if drive_is_set(evidence.world, joint):
+        return None
     if drive is None:
         return -spun, np.zeros_like(spun)
     stated, at, rate = ties.drive(k), evidence.joint(joint), ties.laws.rate(joint)
@@ -108,8 +111,9 @@ def _most(evidence: Evidence, ties: RecordedTies, k: int) -> Floats:
     """The most that joint k's drive can have done, (T - 1,) [J], however fast it came and went."""
     joint, h = ties.joints[k], ties.intervals
     drive, at = joint.drive, evidence.joint(joint)
-    if drive is None or at is None or not drive.told or evidence.recording.metadata.get("controlled"):
+    told = drive is not None and drive.told and not evidence.recording.metadata.get("controlled")
+    if drive is None or at is None or not told or drive_is_set(evidence.world, joint):
         return np.full(len(h), np.inf)
     way, u = np.diff(at.position), drive.velocity
     damper = u * way - way**2 / h if drive.max_effort is None else 0.25 * u**2 * h
-    return np.asarray(-np.diff(held(drive, at.position)) + drive.damping * damper - _spun(ties, k))
+    return np.asarray(-np.diff(held(drive, drive.position, at.position)) + drive.damping * damper - _spun(ties, k))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from wsim.judge.books.catches import catches
 from wsim.judge.checks.check import Check, Checks
+from wsim.judge.evidence.scheduled import pushes
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ class CheckCatches(Check):
         """The catch that throws back most, by its limit. Other engines' stops are springs."""
         if evidence.world.combine != "smaller" or evidence.recording.metadata.get("velocities") == "differences":
             return []
-        if evidence.world.fluids or evidence.recording.metadata.get("controlled"):
+        if evidence.world.fluids or evidence.recording.metadata.get("controlled") or pushes(evidence.world):
             return []
         found = catches(evidence)
         if not found:

@@ -17,6 +17,7 @@ from wsim.judge.checks.strangest import strangest
 from wsim.judge.evidence.cords import track_of_spring
 from wsim.judge.evidence.joints import anchors_of
 from wsim.judge.evidence.motion import FLOAT32
+from wsim.judge.evidence.scheduled import between, drive_is_set
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -72,7 +73,7 @@ class CheckContinuity(Check):
     def prepare(self, joined: Evidence, copies: Sequence[Evidence]) -> None:
         """What is asked of all copies at once."""
         world = joined.world
-        tied = world.joints or world.springs or world.ropes
+        tied = world.joints or world.springs or world.ropes or world.schedules
         if len(joined.motion.h) and world.bodies and not tied:
             asked = self._asked(joined)
             for n, evidence in enumerate(copies):
@@ -84,11 +85,12 @@ class CheckContinuity(Check):
         going, turning = _driven(evidence)
         faster, spinning = _whirling(evidence)
         handed = self._handed_on(evidence)
-        return (
-            (lengths(strayed), self._place_limit(evidence, handed, going + faster)),
-            self._turns(evidence, handed, turning + spinning),
-            self._drift(evidence, strayed, going),
-        )
+        place = lengths(strayed), self._place_limit(evidence, handed, going + faster)
+        turn = self._turns(evidence, handed, turning + spinning)
+        if evidence.world.schedules:  # which push and lead bodies within an interval, too
+            sets, h = between(evidence), evidence.motion.h[:, None]
+            place, turn, going = (place[0], place[1] + h * sets[0]), (turn[0], turn[1] + h * sets[1]), going + sets[0]
+        return place, turn, self._drift(evidence, strayed, going)
 
     @staticmethod
     def _strayed(evidence: Evidence) -> Floats:
@@ -329,7 +331,8 @@ def _whirling(evidence: Evidence) -> tuple[Floats, Floats]:
 def _towards(evidence: Evidence, joint: Joint, position: Floats) -> NDArray[np.bool_]:
     """Whether a driven joint comes nearer to what its drive is set to in each interval, as far as that is known."""
     drive = joint.drive
-    if drive is None or not drive.told or drive.stiffness <= 0.0 or evidence.recording.metadata.get("controlled"):
+    set_ = bool(evidence.recording.metadata.get("controlled")) or drive_is_set(evidence.world, joint)
+    if drive is None or not drive.told or drive.stiffness <= 0.0 or set_:
         return np.ones(len(position) - 1, dtype=bool)
     off = np.abs(position - drive.position)
     return np.asarray(off[1:] <= off[:-1])

@@ -10,6 +10,7 @@ import numpy as np
 from wsim.judge.books.bearing import load_of
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.evidence.joints import HELD, LEANS, broken, said_broken, unbroken_track_of
+from wsim.judge.evidence.scheduled import released
 from wsim.judge.repair.drive import stronger
 from wsim.judge.verdict import RepairTarget
 
@@ -197,7 +198,7 @@ class CheckBreakage(Check):
         at = int(np.argmax(held)) if end else 0
         found = held.max(initial=0.0) - 1.0, f"bears {held.max(initial=0.0):.4g}"
         before = load.before(gone)
-        if before is not None:
+        if before is not None and not released(evidence, joint):
             last = before.start + int(np.argmax(share[before]))
             rises = 1.5 * np.abs(np.diff(share[max(last - 2, 0) : last + 1])).max(initial=0.0)
             early = 1.0 - share[last] - rises
@@ -216,7 +217,7 @@ class CheckBreakage(Check):
     def _borne(self, evidence: Evidence, joint: Joint, share: Floats, gone: NDArray[np.bool_]) -> Finding:
         at = int(np.argmax(gone)) if gone.any() else int(np.argmax(share))
         held = share[:at].max(initial=0.0) if gone.any() else float(share[at])
-        early = bool(gone.any()) and 1.0 - share[at] > held - 1.0
+        early = bool(gone.any()) and 1.0 - share[at] > held - 1.0 and not released(evidence, joint)
         what = f"breaks at {share[at]:.4g}" if early else f"bears {held:.4g}"
         fine = f"breaks at {share[at]:.4g}" if gone.any() else f"bears at most {held:.4g}"
         return self.measured(

@@ -57,7 +57,7 @@ class CheckPlanJoints(Check):
                 found.append(self.failed(message, prim=made.prim, time=0.0, target=target))
                 continue
             found += [*self._axis(evidence, made, planned), *self._anchor(evidence, made, planned)]
-            found += self._holds(plan, made)
+            found += self._holds(plan, made, planned)
             if not evidence.varied:
                 found += [*self._limits(made, planned), *self._drive(evidence, made, planned)]
         found += self._extra(evidence, [made for _, made in pairs if made is not None])
@@ -118,11 +118,11 @@ class CheckPlanJoints(Check):
                 ),
             )  # fmt: skip
 
-    def _holds(self, plan: Plan, made: Joint) -> Iterator[Finding]:
+    def _holds(self, plan: Plan, made: Joint, planned: PlanJoint) -> Iterator[Finding]:
         """Dry friction and a strength, which a plan's joints have no field for: its words must name them."""
         for what, parameter, given in (
             ("friction", "friction", made.friction > 0.0),
-            ("breaks", "break_force", made.may_break),
+            ("breaks", "break_force", made.may_break and not _let_go(plan, planned)),
         ):
             if given and not named(plan, what):
                 target = RepairTarget(kind="joint", prim=made.prim, parameter=parameter, direction="remove")
@@ -240,6 +240,11 @@ class CheckPlanJoints(Check):
                 suggested=wanted, unit=unit,
             ),
         )  # fmt: skip
+
+
+def _let_go(plan: Plan, planned: PlanJoint) -> bool:
+    """Whether a schedule of the plan lets a joint go, which is then one that breaks at a load that nothing comes to."""
+    return any(each.of == planned.name and each.quantity == "release" for each in plan.schedules)
 
 
 def _in_the_world(evidence: Evidence, planned: PlanJoint) -> tuple[float, ...]:

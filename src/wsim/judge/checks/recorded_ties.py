@@ -126,10 +126,14 @@ class CheckRecordedTies(Check):
     def _driven(
         self, ties: RecordedTies, k: int, joint: Joint, least: Floats, unit: str, controlled: bool
     ) -> Iterator[Asked]:
-        given, drive, h = ties.track.drive[1:, k].astype(np.float64), joint.drive, ties.intervals
+        drive, h = joint.drive, ties.intervals
+        given = ties.track.drive[1:, k].astype(np.float64) - ties.laws.aims(joint).effort * h
         if drive is None:
+            what = "is driven, and has no drive"
+            if ties.laws.aims(joint).effort.any():
+                what = "is pushed otherwise than by its schedule"
             if not controlled:
-                yield Asked("drive", joint.prim, joint.child, "is driven, and has no drive", np.abs(given),
+                yield Asked("drive", joint.prim, joint.child, what, np.abs(given),
                             self.exact * least, unit)  # fmt: skip
             return
         if drive.max_effort is not None and not controlled:

@@ -39,6 +39,7 @@ from wsim.judge.checks import (
     rest,
     rolling,
     run,
+    scheduled,
     settled,
     stated,
     water,
@@ -49,9 +50,9 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics, settled, stated, continuity, motion, forces, recorded, recorded_state, recorded_ties, impacts, rolling,
-    catches, energy, contact, rest, joint, cord, mass, plan, plan_closed, plan_joints, plan_cords, plan_contacts,
-    plan_motion, plan_vehicles, plan_land,
+    physics, settled, stated, scheduled, continuity, motion, forces, recorded, recorded_state, recorded_ties, impacts,
+    rolling, catches, energy, contact, rest, joint, cord, mass, plan, plan_closed, plan_joints, plan_cords,
+    plan_contacts, plan_motion, plan_vehicles, plan_land,
     fluid, fluid_books, fluid_push, lift, fluid_height, water, camera,
 )  # fmt: skip
 

@@ -12,6 +12,7 @@ from wsim.geometry.paths import exponential
 from wsim.geometry.rotations import lengths, multiply, rotate
 from wsim.judge.checks.check import Check, Checks, worst
 from wsim.judge.evidence.motion import FLOAT32, OURS
+from wsim.judge.evidence.scheduled import led
 from wsim.judge.repair.start import start_taken, way_taken
 from wsim.scene.usd_motion import curve_of
 
@@ -113,12 +114,14 @@ class CheckPath(Check):
 
     def _of(self, evidence: Evidence, k: int, body: Body, share: float) -> list[Finding]:
         motion, time = evidence.motion, evidence.time
-        places, turns = _led(body, time)
+        places, turns = _by_schedules(evidence, body) or _led(body, time)
         far = lengths(motion.q[:, k, :3] - places)
         way = np.concatenate([[0.0], np.cumsum(lengths(np.diff(places, axis=0)))])
         rounding = 8.0 * FLOAT32 * lengths(places)
         turned = _angles(motion.q[:, k, 3:], turns)
         round_ = float(np.linalg.norm(body.angular_velocity)) * (time - time[0])
+        if (gone := led(evidence, body.prim)) is not None:
+            round_ = np.cumsum(lengths(gone[1]))
         return [
             self._worst(body, time, far, self.place * motion.radius[k] + share * way + rounding, "m", "is"),
             self._worst(body, time, turned, self.turn + share * round_, "rad", "is turned"),
@@ -147,6 +150,19 @@ def _led(body: Body, time: Floats) -> tuple[Floats, Floats]:
     arm = np.array(body.com)
     centre = np.array(body.position) + rotate(start, arm) + since * np.array(body.velocity)
     return centre - rotate(turns, np.broadcast_to(arm, centre.shape)), turns
+
+
+def _by_schedules(evidence: Evidence, body: Body) -> tuple[Floats, Floats] | None:
+    """Where schedules of its velocities take a kinematic body, as `_led`; None where it has none."""
+    gone = led(evidence, body.prim)
+    if gone is None:
+        return None
+    turns = [np.array(body.rotation, dtype=np.float64)]
+    for turn in exponential(gone[1][1:]):
+        turns.append(multiply(turn, turns[-1]))
+    every, arm = np.array(turns), np.array(body.com)
+    centre = np.array(body.position) + rotate(every[0], arm) + gone[0]
+    return centre - rotate(every, np.broadcast_to(arm, centre.shape)), every
 
 
 def _moves(body: Body) -> bool:

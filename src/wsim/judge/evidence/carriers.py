@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import rotate
+from wsim.judge.evidence.scheduled import belt, fastest
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -37,13 +38,13 @@ def carriers(evidence: Evidence) -> list[Placed]:
     return [
         shape
         for shape in evidence.placed
-        if any(shape.shape.surface_velocity) or (shape.body >= 0 and goes[shape.body])
+        if any(fastest(evidence.world, shape.shape)) or (shape.body >= 0 and goes[shape.body])
     ]
 
 
 def surface_speed(evidence: Evidence) -> float:
     """Of the fastest belt [m/s]."""
-    speeds = [math.hypot(*shape.shape.surface_velocity) for shape in evidence.placed]
+    speeds = [math.hypot(*fastest(evidence.world, shape.shape)) for shape in evidence.placed]
     return max(speeds, default=0.0)
 
 
@@ -118,7 +119,7 @@ def _velocity(evidence: Evidence, shape: Placed, i: int) -> tuple[Floats, Floats
         frame = evidence.body_q[:, k, 3:]
         own = motion.v[:, k] + np.cross(motion.w[:, k], motion.com[:, i] - motion.com[:, k])
         turning = np.linalg.norm(motion.w[:, k], axis=1)
-    u = own + rotate(frame, np.broadcast_to(np.array(shape.shape.surface_velocity), (len(frame), 3)))
+    u = own + rotate(frame, belt(evidence, shape.shape))
     changes = 0.5 * np.linalg.norm(np.diff(u, axis=0), axis=1)
     spread: Floats = np.maximum(turning[1:], turning[:-1]) * motion.radius[i] + changes
     return 0.5 * (u[1:] + u[:-1]), spread

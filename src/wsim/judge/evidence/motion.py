@@ -15,6 +15,7 @@ import numpy as np
 from wsim.geometry.rotations import conjugate, lengths, rotate
 from wsim.geometry.shapes import kind_of
 from wsim.judge.evidence.cords import spring_energy
+from wsim.judge.evidence.scheduled import pushes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -131,7 +132,7 @@ class Motion:
         Nothing of what gravity and contacts alone move, where the simulator says that its steps are of second order.
         """
         world, metadata = self._recorded.world, self._recorded.recording.metadata
-        if metadata.get(OURS) != 2 or world.fluids or metadata.get("controlled"):
+        if metadata.get(OURS) != 2 or world.fluids or metadata.get("controlled") or pushes(world):
             return np.full(len(self.jointed), self.dt)
         return np.where(self.jointed | self.kinematic, self.dt, 0.0)
 

@@ -45,6 +45,7 @@ from wsim.plan.schema.objects import (
 from wsim.plan.schema.plan import PLAN_VERSION, Plan
 from wsim.plan.schema.predicates import PREDICATES, TEMPLATES, Predicate
 from wsim.plan.schema.relations import Region, Relation
+from wsim.plan.schema.schedules import EventPlan, SchedulePlan
 
 __all__ = [
     "PLAN_VERSION",
@@ -62,6 +63,7 @@ __all__ = [
     "Clearance",
     "Contact",
     "Cord",
+    "EventPlan",
     "External",
     "FromAsset",
     "FromRobot",
@@ -88,6 +90,7 @@ __all__ = [
     "Registration",
     "Relation",
     "RoadLayer",
+    "SchedulePlan",
     "SensorPlan",
     "SimulationPlan",
     "Step",

@@ -4,7 +4,18 @@ from __future__ import annotations
 
 from wsim.defaults import FRAME_RATE
 from wsim.plan.schema import Plan, SimulationPlan
-from wsim.program.compose import cameras, contacts, cords, joints, materials, objects, robots, vehicles, words
+from wsim.program.compose import (
+    cameras,
+    contacts,
+    cords,
+    joints,
+    materials,
+    objects,
+    robots,
+    schedules,
+    vehicles,
+    words,
+)  # fmt: skip
 from wsim.program.compose.draft import Draft
 from wsim.program.source import call, number
 
@@ -34,6 +45,7 @@ def compose(plan: Plan) -> str:
         *robots.motions(draft),
         *vehicles.set_off(draft),
         *contacts.statements(plan),
+        *schedules.statements(draft),
         *cameras.statements(plan),
         *_simulation(plan.simulation),
     ]

@@ -43,7 +43,7 @@ _NEEDS: dict[str, dict[str, Any]] = {
     # cells as large as it may be: of a size or a cell tried alone there are not too many
     "terrain": {"size": (0.2, 0.2), "cell": 1000.0, "layers": [_level]}, "scatter": {"count": 1},
     "gear": {"ratio": 1.0}, "robot": {"file_or_id": "desk_arm"}, "vehicle": {},
-    "policy": {}, "sensor_imu": {}, "sensor_joints": {}, "sensor_range": {"body": None},
+    "policy": {}, "schedule": {}, "sensor_imu": {}, "sensor_joints": {}, "sensor_range": {"body": None},
     "sensor_contact": {}, "sensor_camera": {"body": None},
 }  # fmt: skip
 MANY = ("cable", "robot", "vehicle", "scatter")  # whose bodies and joints have names of their own
@@ -57,7 +57,8 @@ OBJECTS = (*BODIES, "robot", "vehicle", "ground", "track", "height_field", "terr
 _TIED = ("name", "parent", "child", "fills", "container", "material", "level", "spacing", "file", "low", "high",
          "a", "b", "anchor_a", "anchor_b", "rest_length", "length", "around", "through", "loose", "links",
          "body", "joints", "times", "positions", "rotations_deg", "joint_a", "joint_b", "points",
-         "layers", "areas", "on", "count", "clear", "follows", "turns")  # fmt: skip
+         "layers", "areas", "on", "count", "clear", "follows", "turns",
+         "what", "quantity", "values", "linear", "point", "after")  # fmt: skip
 # Arguments that say nothing when they are tried alone, and are kept as they are when all are tried together.
 _TOGETHER = ("mass", "density", "static", "kinematic", "velocity", "angular_velocity_deg", "low", "high", "default",
              "eye", "target")  # fmt: skip
