@@ -39,6 +39,11 @@ class Thing:
     meets: Thing | None = None  # what comes at it as it comes at that
     path: Thing | None = None  # the ramp that it is on
     off: bool = False  # leaves its support
+    into: Thing | None = None  # what it comes down in or on, after it has left what it was on
+    side: str | None = None  # the end of its support: "left", "right", "one", "other", "middle"; of a seesaw: what goes down
+    times: int | None = None  # that it bounces, at least
+    manners: set[str] = field(default_factory=set)  # "upright", "head_on", "from_rest", "still", ...
+    of: int = 1  # how many the prompt spoke of, before one was chosen
     speed: float | None = None  # [m/s]
     way: float | None = None  # that it drives [m]
     angle: float | None = None  # [deg] of a throw, or of a pendulum at the start
@@ -101,6 +106,7 @@ class Cast:
     tank: str | None = None  # the prompt's words for it, if it was named
     water: str | None = None
     pour: Pour | None = None
+    ground: str | None = None  # the ground's material, if it is said
     office: str | None = None  # the prompt's words for one that is patrolled
     duration: float | None = None  # [s], if it was given
     assumptions: list[Assumption] = field(default_factory=list)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from wsim.errors import UserError
 from wsim.rules.actions import MOVES, act, meet
-from wsim.rules.cast import CARRIERS, Cast, Pour, Thing
-from wsim.rules.grammar import NotUnderstood
-from wsim.rules.phrases import Action, Clause, Phrase
-from wsim.rules.places import stand
+from wsim.rules.cast import CARRIERS, Beside, Cast, Pour, Thing
+from wsim.rules.phrases import Action, Clause, Phrase, Place
+from wsim.rules.places import stand, support
 from wsim.rules.reader import EACH_OTHER, Reader
+from wsim.rules.tokens import NotUnderstood
 
 
 def understand(clauses: list[Clause]) -> Cast:
@@ -27,33 +29,98 @@ def understand(clauses: list[Clause]) -> Cast:
 
 def _clause(reader: Reader, clause: Clause) -> None:
     """Take in one clause."""
+    _say_held(clause)
     subjects: list[Thing] = []
     scenery = []
-    pending: list[Phrase] = []
+    pending: list[Thing] = []
     for phrase in clause.subjects:
         if reader.is_scenery(phrase):
             reader.scenery(phrase)
             scenery.append(phrase)
             continue
-        if phrase.kind == "pronoun":
-            subjects += reader.pronoun(phrase, clause.actions)
-        else:
-            subjects.append(reader.thing(phrase))
-        pending.append(phrase)
+        found = reader.subjects(phrase, clause.actions)
+        subjects += found
+        pending += found
         if phrase.places:  # "a cork ball and an iron ball in a tank": both are in it
-            for thing in subjects[-len(pending) :]:
+            for thing in pending:
                 stand(reader, thing, phrase.places)
             pending = []
+        for said in phrase.clauses:
+            _together(reader, found, said)
+    for thing in subjects if clause.within is not None else []:
+        _within(reader, thing, clause.within)
+    if any(phrase.kind not in ("choice", "pronoun", "part") for phrase in clause.subjects):
+        reader.spoken, reader.chosen = [*subjects], []
     for action in clause.actions:
-        if _of_scenery(reader, clause, scenery, subjects, action):
-            continue
-        if action.verb in ("collide", "hit") and (action.target is None or action.target.part in EACH_OTHER):
-            meet(reader, subjects, action)
-            continue
-        for thing in subjects:
-            act(reader, thing, action)
+        if not _of_scenery(reader, clause, scenery, subjects, action):
+            _together(reader, subjects, action)
+        for phrase in _places_of(action):
+            _say(reader, phrase, subjects)
+    for phrase in clause.subjects:
+        for place in phrase.places:
+            for each in (place.phrase, place.other):
+                if each is not None:
+                    _say(reader, each, subjects)
     if subjects:
-        reader.last = subjects
+        reader.last = [thing for thing in subjects if thing in reader.cast.things] or reader.last
+
+
+def _together(reader: Reader, subjects: list[Thing], action: Action) -> None:
+    """Let some things do what is said: two that go at each other as a pair, the rest each for itself."""
+    each_other = [place for place in action.places if place.phrase is not None and place.phrase.part in EACH_OTHER]
+    meets = action.verb in ("collide", "hit", "touch") and not any(p.preposition in ("with", "into") for p in action.places)
+    if (meets and (action.target is None or action.target.part in EACH_OTHER)) or (
+        each_other and action.verb in ("roll", "slide", "move", "push", "run")
+    ):
+        if not (meets and any("meet" in thing.does for thing in subjects)):
+            meet(reader, subjects, action)
+        return
+    for thing in subjects:
+        if action.verb in ("move", "run", "turn") and thing.noun.family == "solid" and action.target is None:
+            action = replace(action, verb="roll" if thing.round else "slide")
+        act(reader, thing, action)
+
+
+def _within(reader: Reader, thing: Thing, place: Place) -> None:
+    """In the tank, or on the table or ramp, that the clause before names."""
+    if thing.support is None and thing.inside is None and thing.path is None:
+        if place.preposition == "down":
+            assert place.phrase is not None
+            support(reader, thing, reader.thing(place.phrase))
+        else:
+            stand(reader, thing, [place])
+
+
+def _say_held(clause: Clause) -> None:
+    """ "A tank that holds water" is one that is filled."""
+    for phrase in [*clause.subjects, *(each for action in clause.actions for each in _places_of(action))]:
+        for said in phrase.clauses:
+            if said.verb == "hold" and said.target is not None and said.target.kind == "water":
+                phrase.filled, phrase.clauses = True, [one for one in phrase.clauses if one is not said]
+
+
+def _places_of(action: Action) -> list[Phrase]:
+    found = [action.target, *(each for place in action.places for each in (place.phrase, place.other))]
+    return [phrase for phrase in found if phrase is not None]
+
+
+def _say(reader: Reader, phrase: Phrase, subjects: list[Thing]) -> None:
+    """What a relative clause says of a thing that another clause names; of what stands still it says it of the subject."""
+    inner = [phrase.owner] if phrase.owner is not None else []
+    for each in [*inner, *([phrase.members] if phrase.members is not None else [])]:
+        _say(reader, each, subjects)
+    if not phrase.clauses:
+        return
+    if reader.is_scenery(phrase):
+        raise NotUnderstood([phrase.words], "lets blocks and balls act, but not a tank, water or the ground")
+    thing = reader.thing(phrase) if phrase.kind != "group" else None
+    for said in phrase.clauses:
+        own = thing is not None and (thing.noun.family in _ACTS or said.verb in ("run", "move", "tilt"))
+        for one in [thing] if own and thing is not None else subjects:
+            act(reader, one, said)
+
+
+_ACTS = ("solid", "belt", "turntable", "pendulum", "seesaw", "robot", "vehicle")
 
 
 def _of_scenery(reader: Reader, clause: Clause, scenery: list[Phrase], subjects: list[Thing], action: Action) -> bool:
@@ -139,6 +206,11 @@ def _check_water(cast: Cast) -> None:
             )
 
 
+def _sides(thing: Thing) -> list[Beside]:
+    """The rows that say where it is; neighbours in water are its row there."""
+    return [beside for beside in thing.beside if beside.predicate != "beside"]
+
+
 def _check_used(thing: Thing) -> None:
     """Refuse what no scene would use, rather than drop it."""
     phrase, family = thing.phrase, thing.noun.family
@@ -148,11 +220,11 @@ def _check_used(thing: Thing) -> None:
     posed = thing.target or thing.meets or thing.path or thing.rod or thing.inside or thing.place == "water"
     ill = family in ("pendulum", "seesaw") or (thing.support is not None and thing.support.noun.family == "seesaw")
     for given, problem in (
-        (phrase.angle is not None and family != "ramp", "inclines a ramp, but not this"),
+        (phrase.angle is not None and family not in ("ramp", "pendulum"), "inclines a ramp, but not this"),
         (phrase.filled, "fills a tank, a bucket or a bowl with water, but not this"),
         (thing.speed is not None and not moving and not carries, "needs to be told how this moves"),
         (thing.spin is not None and family != "turntable", "turns a turntable at a rate, but not this"),
-        (bool(thing.beside) and bool(posed or ill), "cannot place this beside something, with what else it does"),
+        (bool(_sides(thing)) and bool(posed or ill), "cannot place this beside something, with what else it does"),
         (
             family == "pendulum" and bool(set(phrase.measures) - {"x", "z", "mass"}),
             "cannot give a pendulum this measure",

@@ -18,7 +18,8 @@ from wsim.plan.layout.land import set_down
 from wsim.plan.schema import Plan, SimulationPlan
 from wsim.plan.views import cameras
 from wsim.rules.cast import Cast
-from wsim.rules.grammar import NotUnderstood, parse
+from wsim.rules.grammar import parse
+from wsim.rules.tokens import NotUnderstood
 from wsim.rules.lexicon import lexicon
 from wsim.rules.meaning import understand
 from wsim.rules.scenes.bounce import contacts

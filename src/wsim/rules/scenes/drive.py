@@ -17,7 +17,7 @@ from wsim.plan.schema.formula_motion import Moves
 from wsim.plan.schema.formula_place import Reaches, SpeedBetween, Upright
 from wsim.plan.schema.nodes import Finally, Then
 from wsim.rules.cast import Cast, Thing
-from wsim.rules.grammar import NotUnderstood
+from wsim.rules.tokens import NotUnderstood
 from wsim.rules.scenes.country import Country, Way, hill_on, land, scattered, views
 from wsim.rules.scenes.part import Part
 

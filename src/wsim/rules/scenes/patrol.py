@@ -12,7 +12,7 @@ from wsim.plan.schema.formula_contact import TouchesOnly
 from wsim.plan.schema.formula_place import GoneBetween, Reaches, StaysWithin, Upright
 from wsim.plan.schema.nodes import Always, Finally, Then
 from wsim.rules.cast import Cast
-from wsim.rules.grammar import NotUnderstood
+from wsim.rules.tokens import NotUnderstood
 from wsim.rules.scenes.office import ROUTE, cameras, check_way, office
 from wsim.rules.scenes.part import Part
 
