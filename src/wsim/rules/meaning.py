@@ -8,7 +8,7 @@ from wsim.errors import UserError
 from wsim.rules.actions import MOVES, act, meet
 from wsim.rules.cast import CARRIERS, Beside, Cast, Pour, Thing
 from wsim.rules.phrases import Action, Clause, Phrase, Place
-from wsim.rules.places import stand, support
+from wsim.rules.places import common, stand, support
 from wsim.rules.reader import EACH_OTHER, Reader
 from wsim.rules.tokens import NotUnderstood
 
@@ -74,6 +74,8 @@ def _together(reader: Reader, subjects: list[Thing], action: Action) -> None:
     ):
         if not (meets and any("meet" in thing.does for thing in subjects)):
             meet(reader, subjects, action)
+        elif not all(common(reader, thing, place) for place in action.places for thing in subjects):
+            raise NotUnderstood([action.words], "lets two things collide, but not so:")
         return
     for thing in subjects:
         if action.verb in ("move", "run", "turn") and thing.noun.family == "solid" and action.target is None:
@@ -173,7 +175,12 @@ def _pour(reader: Reader, action: Action) -> None:
 
 def _settle(reader: Reader) -> None:
     """Give each thing whose place is open the one that the rest of the scene leaves for it."""
+    for thing in [one for one in reader.cast.things if one.count > 1 and one.noun.family in _SINGLE]:
+        reader.split(thing)
     for thing in reader.cast.things:
+        if thing.target is not None and thing.target.support is None and thing.support is not None:
+            if thing.support.noun.family == "furniture" and thing.target.noun.family == "solid" and not thing.off:
+                thing.target.support = thing.support  # both are on the table
         _check_used(thing)
         if thing.place is not None:
             continue
@@ -198,12 +205,9 @@ def _check_water(cast: Cast) -> None:
                 f"{thing.words!r}: the builtin planner stacks things on the ground, not in water; unstack them, or "
                 "leave the water out"
             )
-    for thing in cast.things:
-        if cast.wet and {*MOVES} & {*thing.does}:
-            raise UserError(
-                f"{thing.words!r}: the builtin planner rolls things in a scene without a tank; leave the tank out, or "
-                "what rolls"
-            )
+
+
+_SINGLE = ("ramp", "seesaw", "belt", "turntable")  # families that are built one by one
 
 
 def _sides(thing: Thing) -> list[Beside]:

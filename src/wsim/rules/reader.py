@@ -190,7 +190,7 @@ class Reader:
         if phrase.choice == "all":
             found = among
         elif phrase.choice == "other":
-            found = rest
+            found = rest or [thing for thing in among if thing.group]
         elif phrase.choice == "nth":
             start = (phrase.nth or 1) - 1 if (phrase.nth or 1) > 0 else len(among) - count
             found = among if len(among) == 1 and among[0].group else among[start : start + count]
@@ -214,10 +214,10 @@ class Reader:
         whole = phrase.choice == "all"
         found: list[Thing] = []
         for thing in among:
-            found += [thing] if whole or thing.count == 1 or thing.group else self._split(thing)
+            found += [thing] if whole or thing.count == 1 or thing.group else self.split(thing)
         return found
 
-    def _split(self, thing: Thing) -> list[Thing]:
+    def split(self, thing: Thing) -> list[Thing]:
         """Single things in place of one that is several."""
         singles = []
         for _ in range(thing.count):

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from wsim.defaults import WALL
 from wsim.errors import UserError
+from wsim.plan.layout.bodies import around
 from wsim.plan.schema import Objective, PlanObject, Relation
 from wsim.plan.schema.formula_contact import CollidesWith
 from wsim.rules.cast import Beside, Cast, Thing
 from wsim.rules.places import SIDES
 from wsim.rules.scenes.bounce import bounce, bounces
-from wsim.rules.scenes.motion import ground_object, hit, meet, move, struck, throw_height
-from wsim.rules.scenes.part import Part, fall_time, tall
-from wsim.rules.scenes.tip import tipped
+from wsim.rules.scenes.hit import hit, meet, struck
+from wsim.rules.scenes.motion import ground_object, move, throw_height
+from wsim.rules.scenes.part import Part, fall_time, tall, tidy
+from wsim.rules.scenes.tip import tipped, upended
 from wsim.rules.sizes import bodies
 
 GAP = 0.15  # between neighbours on the ground [m]
@@ -20,21 +22,30 @@ ROW_SHARE = 0.5  # of their height, between things in a row: each then reaches t
 DROP_HEIGHT = 0.5  # [m]
 
 
-def build_ground(cast: Cast, taken: set[str], scene: Part, behind: str | None = None) -> Part:
-    """Everything that stands on the ground, in a row along Y, or in front of a tank.
+def build_ground(cast: Cast, taken: set[str], scene: Part) -> Part:
+    """Everything that stands on the ground, in a row along Y beside what is there already, or in front of a tank.
 
     Args:
         cast: What the prompt speaks of.
         taken: Names in use; grows.
         scene: What is there already.
-        behind: Name of the tank that the row stands in front of.
     """
     things = [thing for thing in cast.things if thing.place == "ground" and id(thing) not in scene.names]
     part = Part(duration=3.0 if any(_waits(thing) for thing in things) else 1.5, names=scene.names)
     _settle_sides(things, cast)
-    ends = _Ends(behind or next((o.name for o in scene.objects), None), "FRONT-OF" if behind else "LEFT-OF")
+    for thing in things:
+        for beside in thing.beside:
+            if not any(item.name in scene.names.get(id(beside.ref), []) for item in scene.objects) and id(beside.ref) in scene.names:
+                raise UserError(f"{thing.words!r} beside {beside.ref.words!r}: the builtin planner builds nothing there")
+    ends = _Ends(scene, still=not any(_goes(thing) for thing in things))
+    catches = [thing.into for thing in things if thing.into is not None]
+    for thing in catches:
+        [part.vessels[id(thing)]] = bodies(thing, cast, taken)
+        part.names[id(thing)] = [part.vessels[id(thing)].name]
     # What carries another comes first: its name is needed.
     for thing in sorted(things, key=lambda thing: _depth(thing, [])):
+        if thing in catches:
+            continue
         if thing.target is None and "meet" not in thing.does:
             _place(thing, cast, taken, part, ends)
     for thing in things:
@@ -53,19 +64,29 @@ def _waits(thing: Thing) -> bool:
     return thing.noun.family == "solid" and not {"roll", "slide", "push", "throw", "meet"} & {*thing.does}
 
 
+def _goes(thing: Thing) -> bool:
+    return bool({"roll", "slide", "push", "throw", "meet", "topple"} & {*thing.does})
+
+
 class _Ends:
     """Where rows end: what the next thing without a place of its own stands beside."""
 
-    def __init__(self, ground: str | None, side: str) -> None:
-        self.side = side
-        self.last: dict[int | None, str] = {} if ground is None else {None: ground}
+    def __init__(self, scene: Part, *, still: bool) -> None:
+        tank = any(item.name == "tank" for item in scene.objects)
+        fixed = [item for item in scene.objects if item.pose is not None]
+        self.side = "FRONT-OF" if tank and still and not fixed else "LEFT-OF"
+        first = max(fixed, key=lambda item: around(item).high[1]).name if fixed else "tank" if tank else None
+        self.last: dict[int | None, str] = {} if first is None else {None: first}
+        edge = max((around(item).high[1] for item in fixed), default=0.0)
+        self.clear = tidy(scene.span[1] - edge) if fixed else 0.0  # by which what it carries juts out [m]
 
     def row(self, thing: Thing) -> Relation | None:
         """The row that puts a thing beside the last one on the same support."""
         on = None if thing.support is None else id(thing.support)
         if on not in self.last:
             return None
-        side, gap = (self.side, GAP) if on is None else ("LEFT-OF", GAP_ABOVE)
+        side, gap = (self.side, GAP + self.clear) if on is None else ("LEFT-OF", GAP_ABOVE)
+        self.clear = 0.0 if on is None else self.clear
         return Relation(predicate=side, ref=self.last[on], gap=gap)
 
     def grow(self, thing: Thing, name: str) -> None:
@@ -115,6 +136,8 @@ def _place(thing: Thing, cast: Cast, taken: set[str], part: Part, ends: _Ends) -
     height = _drop_height(thing, cast, part)
     made = bodies(thing, cast, taken)
     part.names[id(thing)] = [item.name for item in made]
+    if "upright" in thing.manners:
+        made = [upended(item) for item in made]
     if "topple" in thing.does and not _hit(thing, cast):
         made = tipped(thing, made, part, cast)
     for index, item in enumerate(made):
@@ -127,6 +150,8 @@ def _place(thing: Thing, cast: Cast, taken: set[str], part: Part, ends: _Ends) -
         if height is not None and "drop" in thing.does:
             part.goes[item.name] = [(0.0, 0.0, -height)]
         part.objects.append(item.related(rows + item.relations))
+        part.objects += part.caught
+        part.caught = []
         at = part.names[id(thing.inside)][0] if thing.inside is not None else lower
         if bounces(thing):
             surface = next(o for o in [*part.objects, ground_object()] if o.name == (below or "ground"))

@@ -6,7 +6,7 @@ import math
 
 from wsim.defaults import GRAVITY
 from wsim.errors import UserError
-from wsim.plan.schema import PlanObject
+from wsim.plan.schema import PlanObject, Proxy
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.scenes.part import Part, tall, tidy
 
@@ -20,6 +20,7 @@ def tipped(thing: Thing, made: list[PlanObject], part: Part, cast: Cast) -> list
     Raises:
         UserError: A row of them is too low for one to reach and tip the next; or they are round.
     """
+    made = [upended(item) for item in made] if thing.arrangement != "stack" else made
     if any(item.primitive not in ("box", "cylinder") for item in made) or thing.noun.lies:
         raise UserError(
             f"{thing.words!r}: the builtin planner tips boxes and what stands upright; say what else hits it"
@@ -41,6 +42,15 @@ def tipped(thing: Thing, made: list[PlanObject], part: Part, cast: Cast) -> list
     cast.assume(thing.words, f"a push to +X, {what}{math.degrees(rate):.3g} degrees a second about its lower edge", why)
     part.goes[made[-1].name] = [(round(height, 3), 0.0, -height)]
     return [*pushed, *made[len(falling) :]]
+
+
+def upended(item: PlanObject) -> PlanObject:
+    """A plank, a book or the like on its end: its longest edge upright, its shortest along X."""
+    if item.primitive != "box" or item.size[2] >= max(item.size[:2]):
+        return item
+    thin, middle, long = sorted(item.size)
+    size = (thin, middle, long)
+    return item.model_copy(update={"construction": Proxy(primitive="box", size=size)})
 
 
 def _deep(item: PlanObject) -> float:
