@@ -53,7 +53,7 @@ def test_a_world_is_accepted(prompt, tmp_path):
 
 def test_what_slides_off_its_ramp_and_lies_still_has_not_rested_on_it(tmp_path):
     """By 3 s it is on the ground, at rest: more time, as advice, would change nothing; friction would."""
-    _, verdict = judged_world("A wooden block rests on a ramp of 40 degrees for 3 seconds", tmp_path)
+    _, verdict = judged_world("A wooden block rests on a wooden ramp of 40 degrees for 3 seconds", tmp_path)
     assert verdict.status == "rejected"
     wrong = [finding for finding in verdict.findings if not finding.passed]
     assert {finding.check for finding in wrong} >= {"ObjectiveFormula"}

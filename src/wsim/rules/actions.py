@@ -11,7 +11,7 @@ from wsim.rules.goes import aim, go, movable, push, strike
 from wsim.rules.lexicon import lexicon
 from wsim.rules.phrases import Action, Phrase, Place
 from wsim.rules.places import MANNERS, arrange, common, do, hang, part, put, put_inside, stand, support, where
-from wsim.rules.reader import Reader
+from wsim.rules.reader import EACH_OTHER, Reader
 from wsim.rules.tokens import NOT_IN_THIS_ORDER, NotUnderstood
 
 MOVES = ("roll", "slide", "push", "throw", "swing", "meet", "hang", "tilt")  # what a thing does on the ground alone
@@ -20,7 +20,7 @@ _INTO = ("into", "to", "against", "towards", "at")
 
 def act(reader: Reader, thing: Thing, action: Action) -> None:
     """Let a thing do what a clause says."""
-    _RULES[action.verb](reader, thing, action)
+    (_be if action.verb == "be" else _RULES[action.verb])(reader, thing, action)
 
 
 def meet(reader: Reader, things: list[Thing], action: Action) -> None:
@@ -127,7 +127,8 @@ def _move(reader: Reader, thing: Thing, action: Action) -> None:
 
 def _run(reader: Reader, thing: Thing, action: Action) -> None:
     if thing.noun.family not in CARRIERS:
-        raise NotUnderstood([f"{thing.words} {action.words}"], "lets a conveyor run and a turntable turn, not this:")
+        said = thing.words if action.relative else f"{thing.words} {action.words}"
+        raise NotUnderstood([said], "lets a conveyor run and a turntable turn, not this:")
     put(thing, "ground")
     do(thing, "run")
     for place in action.places:
@@ -337,7 +338,7 @@ _RULES: dict[str, Callable[[Reader, Thing, Action], None]] = {
     "float": _in_water, "sink": _in_water, "submerge": _in_water,
     "topple": falls.topple, "fall": falls.fall, "drop": falls.fall, "bounce": falls.bounce, "land": falls.land,
     "roll": _roll, "slide": _slide, "push": push, "hit": strike, "knock": strike, "collide": strike, "touch": strike,
-    "go": _go, "go_up": _go, "balance": _balance, "miss": _refused, "be": _be,
+    "go": _go, "go_up": _go, "balance": _balance, "miss": _refused,
     "throw": _throw, "fly": _throw, "swing": _swing, "hang": _swing, "tilt": _tilt,
     "carry": _carry, "move": _move, "ride": _ride, "run": _run, "patrol": _patrol, "return": _return,
     "drive": wheels.drive, "cross": wheels.cross, "leave": wheels.leave, "reach": wheels.leave,

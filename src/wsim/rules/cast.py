@@ -20,6 +20,7 @@ class Beside:
     ref: Thing
     other: Thing | None = None
     gap: float | None = None  # [m]
+    loose: bool = False  # on whichever side
 
 
 @dataclass(eq=False)
@@ -31,6 +32,7 @@ class Thing:
     arrangement: str = ""  # "stack": on one another; "row": behind one another
     place: str | None = None  # "water" or "ground"
     support: Thing | None = None  # what it stands on or drops on, if that is another thing
+    bridges: Thing | None = None  # the second of two that it lies on
     inside: Thing | None = None  # the vessel that it is in
     beside: list[Beside] = field(default_factory=list)
     does: list[str] = field(default_factory=list)  # float, sink, submerge, drop, rest, roll, slide, topple, ...

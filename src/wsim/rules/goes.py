@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from wsim.errors import UserError
 from wsim.rules.cast import CARRIERS, Thing
+from wsim.rules.lexicon import lexicon
 from wsim.rules.phrases import Action, Phrase, Place
-from wsim.rules.places import common, do, put, support, where
+from wsim.rules.places import common, do, put, stand, support, where
 from wsim.rules.reader import EACH_OTHER, Reader
 from wsim.rules.tokens import NOT_IN_THIS_ORDER, NotUnderstood
 
@@ -105,10 +106,12 @@ def strike(reader: Reader, thing: Thing, action: Action) -> None:
     """Hit, knock over, push, collide with: it rolls or slides into its target, or swings or falls on it."""
     if thing.noun.family != "pendulum" and thing.rod is None:
         movable(thing, action)
-    off = None
+    off, below = None, []
     for place in action.places:
         if place.preposition == "toward":
             thing.direction = place.direction
+        elif place.preposition in ("on", "in") and place.phrase is not None and place.phrase.kind in lexicon().nouns:
+            below.append(place)
         elif place.preposition in ("off", "via"):
             off = place
         elif not common(reader, thing, place):
@@ -118,6 +121,9 @@ def strike(reader: Reader, thing: Thing, action: Action) -> None:
     if action.target is None:
         raise NotUnderstood([action.words], "needs to be told what is hit:")
     aim(reader, thing, action.target, action)
+    for place in below:
+        if thing.target is not None and thing.target.support is None:
+            stand(reader, thing.target, [place])
     if off is not None or action.particle == "off":
         _off(reader, thing, action, off)
 

@@ -143,8 +143,21 @@ class _Clauses(Transformer):
     # ---- things
     def subject(self, _meta: Any, children: list[Any]) -> Phrase:
         phrase: Phrase = children[0]
-        phrase.places = [child for child in children[1:] if isinstance(child, Place)]
+        phrase.places = self._given_on([phrase], [child for child in children[1:] if isinstance(child, Place)])
         return phrase
+
+    def _given_on(self, phrases: list[Phrase], places: list[Place]) -> list[Place]:
+        """The places, less those that follow a relative clause: "on a belt that runs at 1 m/s" is of the belt."""
+        kept: list[Place] = []
+        of = next((phrase for phrase in phrases if any(one.relative for one in phrase.clauses)), None)
+        for place in places:
+            if of is not None:
+                self._place(next(one for one in of.clauses if one.relative), place)
+                of.words += f" {place.words}"
+                continue
+            kept.append(place)
+            of = place.phrase if place.phrase is not None and any(o.relative for o in place.phrase.clauses) else None
+        return kept
 
     def det(self, _meta: Any, children: list[Any]) -> Token:
         return children[0]
@@ -205,6 +218,8 @@ class _Clauses(Transformer):
     def made(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
         return children[0], {"material": _meaning(children[-1])}
 
+    owned = made
+
     def measured(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
         what, measure = _meaning(children[0]), children[1]
         kind = {"mass": "MASS", "density": "DENSITY"}.get(what, "LENGTH")
@@ -218,10 +233,10 @@ class _Clauses(Transformer):
     def doing(self, meta: Any, children: list[Any]) -> Action:
         whole = next((child for child in children if isinstance(child, Action)), None)
         if whole is not None:
-            whole.words = self._words(meta)
+            whole.relative = True
             return whole
         verb = next(child for child in children if _is(child, "ING"))
-        action = Action(_meaning(verb), self._words(meta))
+        action = Action(_meaning(verb), self._words(meta), relative=True)
         for place in (child for child in children if isinstance(child, Place)):
             self._place(action, place)
         return action
@@ -269,6 +284,7 @@ class _Clauses(Transformer):
     def part(self, meta: Any, children: list[Any]) -> Phrase:
         owner = next((child for child in children if isinstance(child, Phrase)), None)
         side = next((_meaning(child) for child in children if _is(child, "DIRECTION")), None)
+        side = "other" if any(_is(child, "OTHER") for child in children) else side
         named = next(_meaning(child) for child in children if _is(child, "PART"))
         return Phrase("part", self._words(meta), part=named, owner=owner, choice=side or "")
 
@@ -277,7 +293,8 @@ class _Clauses(Transformer):
         verb = next(child for child in children if _is(child, "VERB", "ING"))
         action = Action(_meaning(verb), self._words(meta))
         action.target = next((child for child in children if isinstance(child, Phrase)), None)
-        for place in (child for child in children if isinstance(child, Place)):
+        inner = [action.target] if action.target is not None else []
+        for place in self._given_on(inner, [child for child in children if isinstance(child, Place)]):
             self._place(action, place)
         known = self.tokens.known
         if (action.particle or "") not in (*known.particles[action.verb], *([""] if action.target else [])):
@@ -297,7 +314,8 @@ class _Clauses(Transformer):
             action.places.append(place)
 
     def stands(self, meta: Any, children: list[Any]) -> Action:
-        return Action("rest", self._words(meta), places=[child for child in children if isinstance(child, Place)])
+        places = self._given_on([], [child for child in children if isinstance(child, Place)])
+        return Action("rest", self._words(meta), places=places)
 
     def is_(self, meta: Any, children: list[Any]) -> Action:
         """What a clause of its own says of a thing: "the ramp is at 20 degrees"."""

@@ -77,10 +77,30 @@ def _together(reader: Reader, subjects: list[Thing], action: Action) -> None:
         elif not all(common(reader, thing, place) for place in action.places for thing in subjects):
             raise NotUnderstood([action.words], "lets two things collide, but not so:")
         return
+    agents = [place for place in action.places if place.preposition == "by" and place.phrase is not None]
+    if agents and action.target is None and action.verb in PASSIVE:
+        _by(reader, subjects, action, agents[0])
+        return
     for thing in subjects:
-        if action.verb in ("move", "run", "turn") and thing.noun.family == "solid" and action.target is None:
+        carrier = thing.support if thing.support is not None and thing.support.noun.family == "turntable" else None
+        if action.verb == "run" and carrier is not None:
+            thing = carrier
+        if action.verb in ("move", "run") and thing.noun.family == "solid" and action.target is None:
             action = replace(action, verb="roll" if thing.round else "slide")
         act(reader, thing, action)
+
+
+def _by(reader: Reader, subjects: list[Thing], action: Action, agent: Place) -> None:
+    """ "Is hit by a ball": what the agent does to it."""
+    assert agent.phrase is not None
+    if len(subjects) != 1:
+        raise NotUnderstood([action.words], "lets one thing be hit by another; name one:")
+    target = Phrase("the", subjects[0].words)
+    reader.named[id(target)] = subjects[0]
+    reader.kept.append(target)
+    for thing in reader.subjects(agent.phrase, []):
+        places = [place for place in action.places if place is not agent]
+        act(reader, thing, replace(action, target=target, places=places))
 
 
 def _within(reader: Reader, thing: Thing, place: Place) -> None:
@@ -122,6 +142,7 @@ def _say(reader: Reader, phrase: Phrase, subjects: list[Thing]) -> None:
             act(reader, one, said)
 
 
+PASSIVE = ("hit", "knock", "topple", "push", "touch")
 _ACTS = ("solid", "belt", "turntable", "pendulum", "seesaw", "robot", "vehicle")
 
 
@@ -215,9 +236,19 @@ def _sides(thing: Thing) -> list[Beside]:
     return [beside for beside in thing.beside if beside.predicate != "beside"]
 
 
+def _posed(thing: Thing) -> bool:
+    """Whether it has a place of its own in its part of the scene, which rows do not give."""
+    on = thing.support.noun.family if thing.support is not None else ""
+    own = thing.noun.family in ("pendulum", "seesaw", "ramp", "belt", "turntable")
+    return own or on in ("seesaw", "belt", "turntable") or thing.path is not None or thing.rod is not None
+
+
 def _check_used(thing: Thing) -> None:
     """Refuse what no scene would use, rather than drop it."""
     phrase, family = thing.phrase, thing.noun.family
+    for beside in thing.beside:
+        if beside.loose and (_posed(thing) or _posed(beside.ref)):
+            beside.predicate = "beside"  # the parts of a scene are side by side
     goes = {"roll", "slide", "push", "throw", "meet", "ride", "run", "patrol", "drive", "cross"}
     moving = thing.target is not None or goes & {*thing.does}
     carries = family in CARRIERS or (thing.support is not None and thing.support.noun.family == "belt")

@@ -67,6 +67,7 @@ class Action:
     words: str
     target: Phrase | None = None
     particle: str | None = None
+    relative: bool = False  # said of a thing that the words before name: "that runs"
     places: list[Place] = field(default_factory=list)
 
 

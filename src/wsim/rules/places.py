@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from wsim.errors import UserError
 from wsim.rules.cast import Beside, Thing
+from wsim.rules.lexicon import lexicon
 from wsim.rules.phrases import Phrase, Place
 from wsim.rules.reader import Reader
 from wsim.rules.tokens import NOT_IN_THIS_ORDER, NotUnderstood
 
 SURFACES = {"friction": 2.0, "restitution": 1.0}  # what of a surface may be said, and its most
 MANNERS = ("head_on", "from_rest", "still", "together", "upright", "freely", "to_and_fro", "again", "level", "in_turn",
-           "beside")  # fmt: skip
+           "beside", "on_side")  # fmt: skip
 CARRIED = ("solid", "vessel")  # families of what may stand on something
 SIDES = ("LEFT-OF", "RIGHT-OF", "FRONT-OF", "BACK-OF")
 
@@ -41,6 +42,11 @@ def _stand_at(reader: Reader, thing: Thing, place: Place, at: Phrase) -> None:
         elif found.noun.family in ("rod", "rope"):
             hang(reader, thing, found)
             return
+        elif found.count == 2 and not found.group and thing.noun.primitive == "box" and thing.count == 1:
+            first, second = reader.split(found)
+            support(reader, thing, first)
+            put(second, "ground")
+            thing.bridges = second
         else:
             support(reader, thing, found)
         do(thing, "rest")
@@ -71,6 +77,10 @@ def common(reader: Reader, thing: Thing, place: Place) -> bool:
         _surface(reader, thing, place)
     elif place.preposition == "angle" and thing.noun.family == "ramp":
         thing.phrase.angle = place.value
+    elif place.preposition == "angle" and thing.path is not None and "swing" not in thing.does:
+        if thing.path.phrase.angle not in (None, place.value):
+            raise UserError(f"{place.words!r}: the prompt gives the ramp {thing.path.phrase.angle:g} degrees before")
+        thing.path.phrase.angle = place.value
     elif place.preposition in MANNERS:
         thing.manners.add(place.preposition)
     elif place.preposition == "often":
@@ -137,7 +147,7 @@ def _beside(reader: Reader, thing: Thing, place: Place) -> None:
         raise NotUnderstood([place.words], NOT_IN_THIS_ORDER)
     if place.side.assume:
         reader.cast.assume(thing.words, place.side.assume, f"the prompt says {place.words!r}, not on which side")
-    thing.beside.append(Beside(predicate, other, gap=place.length))
+    thing.beside.append(Beside(predicate, other, gap=place.length, loose=bool(place.side.assume)))
     if predicate in SIDES:
         put(thing, "ground")
         put(other, "ground")
@@ -162,8 +172,17 @@ def _above(reader: Reader, thing: Thing, place: Place, other: str | Thing) -> No
 def _between(reader: Reader, thing: Thing, place: Place) -> None:
     assert place.phrase is not None
     if place.other is None:
-        raise NotUnderstood([place.words], "needs to be told between which two things:")
+        pair = reader.thing(place.phrase) if place.phrase.kind in lexicon().nouns else None
+        if pair is None or pair.count != 2 or pair.group:
+            raise NotUnderstood([place.words], "needs to be told between which two things:")
+        first, second = reader.split(pair)
+        _put_between(reader, thing, place, first, second)
+        return
     first, second = where(reader, place.phrase, thing), where(reader, place.other)
+    _put_between(reader, thing, place, first, second)
+
+
+def _put_between(reader: Reader, thing: Thing, place: Place, first: str | Thing, second: str | Thing) -> None:
     if not isinstance(first, Thing) or not isinstance(second, Thing) or len({thing, first, second}) < 3:
         raise NotUnderstood([place.words], "places things between two other things, not so:")
     thing.beside.append(Beside("between", first, second))

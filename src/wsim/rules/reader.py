@@ -25,6 +25,7 @@ class Reader:
         self.spoken: list[Thing] = []  # among which "the first" or "the other" chooses
         self.chosen: list[Thing] = []  # by the choices so far
         self.named: dict[int, Thing] = {}  # what a phrase was found to name, by identity
+        self.kept: list[Phrase] = []  # made on the way: their identity must stay theirs
         self.tanks: list[Phrase] = []
         self.struck: Thing | None = None  # the stack that was hit last
 
@@ -99,13 +100,24 @@ class Reader:
             owner = self.part_of(phrase)
             if owner is None:
                 raise NotUnderstood([phrase.words], "cannot tell of what this is a part")
-            owner.side = phrase.choice or owner.side
+            other = {"left": "right", "right": "left"}
+            owner.side = other.get(self._end_of(owner), "other") if phrase.choice == "other" else phrase.choice or owner.side
             return [owner]
         if phrase.nth is not None and phrase.definite:
             return self._choose(replace(phrase, choice="nth", kind="choice", owner=None), phrase)
         if phrase.masses:
             return self._weighed(phrase)
         return [self.thing(phrase)]
+
+    def _end_of(self, owner: Thing) -> str:
+        """The end of a thing that was spoken of before: that at which something is."""
+        sides = [one.side for one in self.cast.things if one.support is owner and one.side in ("left", "right", "one")]
+        if not sides:
+            return owner.side or ""
+        for one in self.cast.things:
+            if one.support is owner and one.side == "one":
+                one.side = "right"
+        return "right" if sides[0] == "one" else sides[0] or ""
 
     def _weighed(self, phrase: Phrase) -> list[Thing]:
         """ "Two weights of 3 kg and 2 kg": as many things as masses."""

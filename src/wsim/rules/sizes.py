@@ -85,6 +85,8 @@ def size_of(thing: Thing, material: Material, water_density: float, cast: Cast) 
         fitting = _fitting(size, _mouth(vessel.noun), _PLAY if thing.into is None else _LANDING)
         why = why if fitting == size else f"so that it goes into {vessel.words}"
         size = fitting
+    if noun.family == "vessel" and phrase.length is None:
+        size, why = _roomy(thing, size, cast, why)
     if phrase.shape is not None:
         size, why = _shaped(noun.primitive, size, *phrase.shape), "the prompt says only how it is against the usual"
     if phrase.length is not None:
@@ -104,6 +106,17 @@ def _mouth(noun: Noun) -> tuple[float, ...]:
     """The room in a vessel [m]: a catalogue's own is round, and narrower than the box round it."""
     asset = get(noun.asset) if noun.asset is not None else None
     return noun.size if asset is None or asset.hollow is None else tuple(asset.hollow.size)
+
+
+def _roomy(thing: Thing, size: tuple[float, ...], cast: Cast, why: str) -> tuple[tuple[float, ...], str]:
+    """A vessel larger than usual where a catalogue's thing, which is as large as it is, goes into it [m]."""
+    loads = [one for one in cast.things if thing in (one.inside, one.into) and one.noun.asset is not None]
+    widest = max((2 * one.noun.size[0] if len(one.noun.size) < 3 else max(one.noun.size[:2]) for one in loads), default=0)
+    share = widest / (_PLAY * min(_mouth(thing.noun)[:2]))
+    if share <= 1.0:
+        return size, why
+    factor = widest / (_PLAY * min(size[:2]))
+    return tuple(round(max(1.0, factor) * edge, 4) for edge in size), f"so that {loads[0].words} goes into it"
 
 
 def _fitting(size: tuple[float, ...], room: tuple[float, ...], play: float) -> tuple[float, ...]:

@@ -13,6 +13,7 @@ from wsim.rules.scenes.lasting import asked, to_and_fro
 from wsim.rules.scenes.part import Part, fall_time
 
 HARDLY = 0.2  # a restitution below which a ball that falls from 0.5 m comes up by 2 cm
+QUICK = 60.0  # pictures a second, so that each bounce that is counted is seen [1/s]
 SEEN = 3  # bounces that one looks at
 
 
@@ -33,6 +34,7 @@ def bounce(thing: Thing, item: PlanObject, on: PlanObject, part: Part, cast: Cas
         choice = f"warning: with a restitution of {value:g} it comes up to {value**2:.1%} of its height"
         cast.assume(thing.words, choice, "the plan asks for what the prompt says")
     seen = max(SEEN, thing.times or 0)
+    part.frame_rate = max(part.frame_rate, QUICK if thing.times else 0.0)
     part.duration = max(part.duration, round(time * (1 + 2 * sum(value**k for k in range(1, seen + 1))) + 0.5, 1))
     sentence = f"{item.name} bounces off {on.name} with a restitution of {value:g}."
     formula = CollidesWith(object=item.name, ref=on.name, restitution=value)

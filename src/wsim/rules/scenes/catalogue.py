@@ -40,7 +40,7 @@ def _itself(item: PlanObject, thing: Thing) -> PlanObject | None:
     said = phrase.material or phrase.color or phrase.measures or phrase.weight or phrase.shape or thing.surface
     moves = any(item.velocity) or item.angular_velocity_deg or item.rolling
     rubs = any(name != "friction" for _, name, _ in thing.pairs)
-    if not own or said or moves or rubs or bounces(thing) or noun.asset is None:
+    if not own or said or moves or rubs or bounces(thing) or noun.asset is None or thing.bridges is not None:
         return None
     if item.pose is not None and (item.primitive != "tank" or any(item.pose.rotation_deg)):
         return None

@@ -5,21 +5,22 @@ from __future__ import annotations
 from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.layout.bodies import around
+from wsim.plan.schema.predicates import OVERLAP
 from wsim.plan.schema import Objective, PlanObject, Relation
 from wsim.plan.schema.formula_contact import CollidesWith
 from wsim.rules.cast import Beside, Cast, Thing
 from wsim.rules.places import SIDES
 from wsim.rules.scenes.bounce import bounce, bounces
 from wsim.rules.scenes.hit import hit, meet, struck
-from wsim.rules.scenes.motion import ground_object, move, throw_height
+from wsim.rules.scenes.motion import ground_object, move, throw_height, top
 from wsim.rules.scenes.part import Part, fall_time, tall, tidy
-from wsim.rules.scenes.tip import tipped, upended
+from wsim.rules.scenes.tip import on_side, slender, tipped, upended
 from wsim.rules.sizes import bodies
 
 GAP = 0.15  # between neighbours on the ground [m]
 GAP_ABOVE = 0.08  # between neighbours on a table [m]
 ROW_SHARE = 0.5  # of their height, between things in a row: each then reaches the next as it falls
-DROP_HEIGHT = 0.5  # [m]
+DROP_HEIGHT, HIGH = 0.5, 1.5  # usually, and of what is to bounce often [m]
 
 
 def build_ground(cast: Cast, taken: set[str], scene: Part) -> Part:
@@ -33,6 +34,7 @@ def build_ground(cast: Cast, taken: set[str], scene: Part) -> Part:
     things = [thing for thing in cast.things if thing.place == "ground" and id(thing) not in scene.names]
     part = Part(duration=3.0 if any(_waits(thing) for thing in things) else 1.5, names=scene.names)
     _settle_sides(things, cast)
+    _part_bridged(things)
     for thing in things:
         for beside in thing.beside:
             if not any(item.name in scene.names.get(id(beside.ref), []) for item in scene.objects) and id(beside.ref) in scene.names:
@@ -113,6 +115,15 @@ def _settle_sides(things: list[Thing], cast: Cast) -> None:
                     cast.assume(thing.words, f"on {on.words}", f"{beside.ref.words} is there")
 
 
+def _part_bridged(things: list[Thing]) -> None:
+    """Set what carries a bridge's ends so far apart that it is as long as it is to be."""
+    for thing in [one for one in things if one.bridges is not None]:
+        assert thing.bridges is not None and thing.support is not None
+        length = thing.phrase.length or thing.phrase.measures.get("x") or thing.noun.size[0]
+        if not _sides(thing.bridges):
+            thing.bridges.beside.append(Beside("LEFT-OF", thing.support, gap=round(length - 2 * OVERLAP, 3)))
+
+
 def _sides(thing: Thing) -> list[Beside]:
     return [beside for beside in thing.beside if beside.predicate in SIDES]
 
@@ -121,7 +132,7 @@ def _depth(thing: Thing, seen: list[Thing]) -> int:
     if thing in seen:
         names = " and ".join(repr(one.words) for one in seen[:2])
         raise UserError(f"{names} cannot stand on each other, or beside each other in a circle")
-    needs = [thing.support, thing.inside, *(beside.ref for beside in thing.beside)]
+    needs = [thing.support, thing.inside, thing.bridges, *(beside.ref for beside in thing.beside)]
     below = [one for one in needs if one is not None and one.target is None]
     return 1 + max((_depth(one, [*seen, thing]) for one in below), default=-1)
 
@@ -138,6 +149,10 @@ def _place(thing: Thing, cast: Cast, taken: set[str], part: Part, ends: _Ends) -
     part.names[id(thing)] = [item.name for item in made]
     if "upright" in thing.manners:
         made = [upended(item) for item in made]
+    if "on_side" in thing.manners:
+        made = [on_side(item, thing) for item in made]
+    if "topple" in thing.does and thing.arrangement != "stack":
+        made = [slender(thing, item, cast) for item in made]
     if "topple" in thing.does and not _hit(thing, cast):
         made = tipped(thing, made, part, cast)
     for index, item in enumerate(made):
@@ -158,6 +173,7 @@ def _place(thing: Thing, cast: Cast, taken: set[str], part: Part, ends: _Ends) -
             part.objectives += bounce(thing, item, surface, part, cast)
             continue
         part.objectives += _objectives(thing, item, at, last=index == len(made) - 1, cast=cast)
+        part.objectives += _on_both(thing, item.name, part)
 
 
 def _start(thing: Thing, lower: str | None, height: float | None, part: Part, stacked: bool) -> Relation:
@@ -167,10 +183,14 @@ def _start(thing: Thing, lower: str | None, height: float | None, part: Part, st
         vessel = part.names[id(thing.inside)][0]
         if height is not None:
             rim = WALL + next(item.size[2] for item in part.objects if item.name == vessel)
+            rim += top(part.names[id(thing.inside.support)][-1], part) if thing.inside.support is not None else 0.0
             return Relation(predicate="SPAWNED-ABOVE", value=round(rim + height, 6))
         return Relation(predicate="PLACE-IN", ref=vessel)
     if height is not None:
         return Relation(predicate="SPAWNED-ABOVE", ref=lower, value=height)
+    if thing.bridges is not None:
+        other = part.names[id(thing.bridges)][-1]
+        return Relation(predicate="bridge_between_a_and_b", ref=lower, other=other)
     if lower is not None:
         return Relation(predicate="PLACE-ON", ref=lower)
     return Relation(predicate="PLACE-ON-BASE")
@@ -186,6 +206,8 @@ def _in_plane(thing: Thing, made: list[PlanObject], index: int, part: Part, ends
     if thing.arrangement == "row" and index > 0:
         gap = round(ROW_SHARE * tall(item), 3)
         return [Relation(predicate="FRONT-OF", ref=made[index - 1].name, gap=gap)]
+    if thing.bridges is not None:
+        return []
     sides = _sides(thing) if index == 0 else []
     if not sides:
         # On the middle of what carries it, unless something is there already.
@@ -216,7 +238,8 @@ def _drop_height(thing: Thing, cast: Cast, part: Part) -> float | None:
         return throw_height(thing, cast) if thing.support is None else thing.drop_height
     if "drop" not in thing.does:
         return None
-    height = cast.drop_height(thing, DROP_HEIGHT, "what it lands on")
+    usual = DROP_HEIGHT if (thing.times or 0) <= 2 else HIGH
+    height = cast.drop_height(thing, usual, "what it lands on")
     part.duration = max(part.duration, round(2.0 + 2 * fall_time(height), 1))
     return height
 
@@ -255,6 +278,14 @@ def _objectives(thing: Thing, item: PlanObject, lower: str | None, last: bool, c
         cast.assume(thing.words, "nothing is asked of it", f"what is round may stay on {lower} or roll off")
         return []
     return [Objective(kind="stays_on", object=name, ref=lower, sentence=f"{name} stays on {lower}.")]
+
+
+def _on_both(thing: Thing, name: str, part: Part) -> list[Objective]:
+    """Of a bridge: that it stays on what carries its other end, too."""
+    if thing.bridges is None:
+        return []
+    other = part.names[id(thing.bridges)][-1]
+    return [Objective(kind="stays_on", object=name, ref=other, sentence=f"{name} stays on {other}.")]
 
 
 def _hit(thing: Thing, cast: Cast) -> bool:

@@ -10,7 +10,7 @@ from wsim.plan.schema import Objective, PlanObject, Relation
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.scenes.bounce import restitution, returned
 from wsim.rules.scenes.lasting import stops
-from wsim.rules.scenes.motion import SLIDE_SPEED, aimed_at, check_round, ground_object, item_of, started, top
+from wsim.rules.scenes.motion import SLIDE_SPEED, aimed_at, check_round, falls_off, ground_object, item_of, started, top
 from wsim.rules.scenes.part import Part, pair_friction, stopping_distance, tall
 from wsim.rules.sizes import bodies
 
@@ -103,8 +103,7 @@ def _on_table(thing: Thing, target: Thing, item: PlanObject, cast: Cast, part: P
     if target.off:
         index = part.objects.index(met)
         part.objects[index] = met.related([*met.relations, Relation(predicate="ALIGN-FRONT", ref=carrier.name)])
-        sentence = f"{met.name} is knocked off {carrier.name} and falls."
-        part.objectives.append(Objective(kind="topples", object=met.name, sentence=sentence))
+        part.objectives.append(falls_off(met, carrier))
     _ask(thing, target, item, _met(item, part.names[id(target)], target, part), cast, part)
 
 
@@ -156,6 +155,17 @@ def _run_up(slides: bool, speed: float, friction: float) -> float:
     if slides:
         return max(SLIDE_DISTANCE, round(min(APPROACH * speed, SLIDE_SHARE * stopping_distance(speed, friction)), 2))
     return max(ROLL_DISTANCE, round(APPROACH * speed, 2))
+
+
+def _part_again(pair: list[PlanObject], distance: float, speed: float, rolls: bool, cast: Cast, part: Part) -> None:
+    """Where two that met come to, which the cameras are to show: apart again, by their restitution."""
+    back = restitution(*pair) * speed
+    left = (cast.duration or part.duration) - distance / (2 * speed)
+    friction = pair_friction(pair[0], ground_object(cast.ground))
+    way = back * left if rolls else min(stopping_distance(back, friction), back * left)
+    if way > distance / 2:
+        for item, sign in zip(pair, (-1.0, 1.0), strict=True):
+            part.goes[item.name] = [(sign * round(way - distance / 2, 3), 0.0, 0.0)]
 
 
 def _thrown_back(item: PlanObject, bounce: float, friction: float, distance: float, duration: float) -> float:
@@ -227,6 +237,7 @@ def meet(thing: Thing, cast: Cast, taken: set[str], part: Part) -> None:
         moving = started(item, (sign * speed, 0.0, 0.0), rolls=round_)
         part.objects.append(moving.related(rows + item.relations))
     part.duration = max(2.0, round(distance / speed + 1.0, 1)) if part.duration <= 3.0 else part.duration
+    _part_again(pair, distance, speed, all(rolls), cast, part)
     _collision(pair[0].name, pair[1].name, part)
 
 

@@ -7,9 +7,11 @@ import math
 from wsim.defaults import GRAVITY, WALL
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Relation, Vec3
+from wsim.plan.schema.formula_motion import Drops
 from wsim.rules.cast import ROUND, Cast, Thing
 from wsim.rules.materials import GROUND_LOOK, material_named
 from wsim.rules.scenes.catch import catcher, lands, reach
+from wsim.rules.scenes.lasting import asked
 from wsim.rules.scenes.part import DIRECTIONS, MOST_SPEED, Part, fall_time, pair_friction, stopping_distance, tall, tidy, times
 
 ROLL_SPEED, SLIDE_SPEED, PUSH_SPEED = 1.0, 2.0, 1.5  # [m/s]
@@ -87,12 +89,20 @@ def _into(
     ]
     part.caught.append(caught.vessel.related(rows))
     part.objectives += [
-        Objective(kind="topples", object=item.name, sentence=f"{item.name} leaves {carrier.name} and falls."),
+        falls_off(item, carrier),
         lands(item.name, caught.vessel.name),
     ]
     time = way / caught.speed + fall_time(height)
     part.duration = max(part.duration, round(time + 2.0, 1))
     return started(item, times(DIRECTIONS[direction], speed), rolls=how == "roll")
+
+
+def falls_off(item: PlanObject, carrier: PlanObject) -> Objective:
+    """What leaves a table is lower in the end; a flat thing need not have turned."""
+    sentence = f"{item.name} leaves {carrier.name} and falls."
+    if item.primitive == "sphere":
+        return Objective(kind="topples", object=item.name, sentence=sentence)
+    return asked(item.name, sentence, Drops(object=item.name))
 
 
 def _slowed(thing: Thing, speed: float, cast: Cast) -> float:
@@ -139,7 +149,7 @@ def _way(
 ) -> list[Objective]:
     name = item.name
     if thing.off:
-        return [Objective(kind="topples", object=name, sentence=f"{name} leaves {carrier.name} and falls.")]
+        return [falls_off(item, carrier)]
     if how == "roll":
         return []
     way = round(SHARE * stopping_distance(speed, friction), 3)

@@ -8,7 +8,9 @@ from wsim.defaults import GRAVITY
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Pose
 from wsim.rules.cast import Cast, Thing
+from wsim.rules.scenes.motion import falls_off
 from wsim.rules.scenes.part import Part, pair_friction, tall, tidy
+from wsim.rules.scenes.tip import slender, upended
 from wsim.rules.sizes import bodies
 
 GAP = 0.01  # between the bob at its lowest point and what it hits [m]
@@ -34,8 +36,7 @@ class Struck:
         if target.off and self.carrier is not None:
             _, slide = _pushed(thing, item, self.met, self.carrier, speed)
             self._to_edge(slide, part, cast)
-            sentence = f"{name} is knocked off {self.carrier.name} and falls."
-            part.objectives.append(Objective(kind="topples", object=name, sentence=sentence))
+            part.objectives.append(falls_off(self.met, self.carrier))
         elif "topple" in target.does:
             wanted = self.items if target.arrangement == "row" else [last]
             part.objectives += [
@@ -80,6 +81,8 @@ def stand_before(thing: Thing, item: PlanObject, part: Part, cast: Cast, taken: 
         [carrier] = bodies(target.support, cast, taken)
         base = tall(carrier)
     items = bodies(target, cast, taken)
+    if "topple" in target.does and target.arrangement != "stack":
+        items = [slender(target, upended(each), cast) for each in items]
     half = item.size[0] if item.primitive != "box" else item.size[2] / 2
     reach = item.size[0] if item.primitive != "box" else item.size[0] / 2
     heights = [_upright(each) for each in items]
