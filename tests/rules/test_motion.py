@@ -209,7 +209,9 @@ def test_a_friction_is_taken_as_said():
     assert own.object("crate").material.friction == 0.2 and own.contacts == []
     (more,) = plan("A crate with a friction of 0.9 slides at 3 m/s").contacts
     assert (more.ref, more.friction) == ("ground", 0.9)
-    steep = plan("A wooden block rests on a wooden ramp of 40 degrees with a friction of 0.9 between the block and the ramp")
+    steep = plan(
+        "A wooden block rests on a wooden ramp of 40 degrees with a friction of 0.9 between the block and the ramp"
+    )
     assert "warning" not in choices(steep)
     with pytest.raises(UserError, match="a restitution of 3 is outside 0 to 1"):
         plan("A ball with a restitution of 3 drops")

@@ -9,8 +9,8 @@ from wsim.rules import falls, wheels
 from wsim.rules.cast import CARRIERS, Beside, Thing
 from wsim.rules.goes import aim, go, movable, push, strike
 from wsim.rules.lexicon import lexicon
-from wsim.rules.phrases import Action, Phrase, Place
-from wsim.rules.places import MANNERS, arrange, common, do, hang, part, put, put_inside, stand, support, where
+from wsim.rules.phrases import Action, Place
+from wsim.rules.places import MANNERS, arrange, common, do, hang, part, put, stand, support, where
 from wsim.rules.reader import EACH_OTHER, Reader
 from wsim.rules.tokens import NOT_IN_THIS_ORDER, NotUnderstood
 
@@ -112,7 +112,11 @@ def _ride(reader: Reader, thing: Thing, action: Action) -> None:
     movable(thing, action)
     do(thing, "ride")
     for place in action.places:
-        at = where(reader, place.phrase, thing) if place.phrase is not None and place.preposition in ("on", "along") else None
+        at = (
+            where(reader, place.phrase, thing)
+            if place.phrase is not None and place.preposition in ("on", "along")
+            else None
+        )
         if isinstance(at, Thing) and at.noun.family in CARRIERS:
             support(reader, thing, at)
         elif not common(reader, thing, place):
@@ -178,12 +182,15 @@ def _tilt(reader: Reader, thing: Thing, action: Action) -> None:
 def _go(reader: Reader, thing: Thing, action: Action) -> None:
     """Up or down, of a seesaw's end or of what is on it; off or down, of what rolls or slides."""
     seesaw = thing if thing.noun.family == "seesaw" else thing.support
-    if action.particle == "down" and thing.path is not None and not action.places:
+    down_it = any(place.preposition in ("down", "off", "into", "along", "across") for place in action.places)
+    if thing.noun.family == "solid" and (down_it or (action.particle == "down" and thing.path is not None)):
         go(reader, thing, action, "roll" if thing.round else "slide")
         return
     down = action.verb == "go" and action.particle == "down"
     if seesaw is None or seesaw.noun.family != "seesaw" or action.places or not (down or action.verb == "go_up"):
-        raise NotUnderstood([f"{thing.words} {action.words}"], "lets the ends of a seesaw go up and down, but not this:")
+        raise NotUnderstood(
+            [f"{thing.words} {action.words}"], "lets the ends of a seesaw go up and down, but not this:"
+        )
     side = thing.side
     if side not in ("left", "right"):
         riders = [one for one in reader.cast.things if one.support is seesaw]
@@ -239,7 +246,9 @@ def _stop(reader: Reader, thing: Thing, action: Action) -> None:
     movable(thing, action)
     others = [place for place in action.places if not common(reader, thing, place)]
     short = [place.phrase for place in others if place.preposition == "before" and place.phrase is not None]
-    against = [place for place in others if place.preposition in ("against", "at", "on", "in") and place.phrase is not None]
+    against = [
+        place for place in others if place.preposition in ("against", "at", "on", "in") and place.phrase is not None
+    ]
     if len(short) + len(against) != len(others) or len(others) > 1:
         raise NotUnderstood([action.words], "lets a thing that slides stop before another, but not so:")
     if short:
@@ -289,6 +298,8 @@ def _stack(reader: Reader, thing: Thing, action: Action) -> None:
         if place.phrase is not None and group and place.preposition in ("in", "into", "to"):
             if place.phrase.arrangement != "stack":
                 raise NotUnderstood([action.words], "stacks things on one another, not so:")
+            continue
+        if place.preposition == "stacked":
             continue
         at = where(reader, place.phrase, thing) if place.phrase is not None else None
         if isinstance(at, Thing) and place.preposition in ("on", "onto"):

@@ -42,7 +42,9 @@ class Thing:
     path: Thing | None = None  # the ramp that it is on
     off: bool = False  # leaves its support
     into: Thing | None = None  # what it comes down in or on, after it has left what it was on
-    side: str | None = None  # the end of its support: "left", "right", "one", "other", "middle"; of a seesaw: what goes down
+    side: str | None = (
+        None  # the end of its support: "left", "right", "one", "other", "middle"; of a seesaw: what goes down
+    )
     times: int | None = None  # that it bounces, at least
     manners: set[str] = field(default_factory=set)  # "upright", "head_on", "from_rest", "still", ...
     of: int = 1  # how many the prompt spoke of, before one was chosen

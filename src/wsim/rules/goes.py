@@ -147,7 +147,8 @@ def aim(reader: Reader, thing: Thing, phrase: Phrase, action: Action) -> None:
     if phrase.kind == "pronoun" and thing.target is None and thing.support is None:
         target: str | Thing = reader.it(phrase, thing)
     else:
-        target = (thing.target or thing.support) if phrase.kind == "pronoun" else where(reader, phrase, thing)
+        known = thing.target or thing.support if phrase.kind == "pronoun" else None
+        target = known or where(reader, phrase, thing)
     if not isinstance(target, Thing) or target is thing or target.noun.family not in HITS:
         raise NotUnderstood([action.words], "lets a thing hit a block, a ball or a stack, not this:")
     if target.count > 1 and not target.group:

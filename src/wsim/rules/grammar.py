@@ -6,7 +6,6 @@ of the lexicon at its place or a number with its unit, and the phrases that the 
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Iterator
 from functools import cache
 from typing import Any
@@ -19,29 +18,7 @@ from wsim.rules.lexicon import Named, grammar_text, lexicon
 from wsim.rules.phrases import Action, Clause, Phrase, Place
 from wsim.rules.tokens import NOT_IN_THIS_ORDER, NotUnderstood, Tokens
 
-__all__ = ["NOT_IN_THIS_ORDER", "NotUnderstood", "known_words", "parse"]
-
-
-def known_words() -> str:
-    """What the planner knows, for people: a paragraph for each kind of words."""
-    known = lexicon()
-    things = sorted(
-        {
-            *(key.replace("_", " ") for key in known.nouns),
-            *known.words_of("GROUP"),
-            *known.words_of("FLUID"),
-            *known.words_of("GROUND"),
-        }
-    )
-    kinds = {
-        "things": things,
-        "materials": known.words_of("MATERIAL"),
-        "colours": known.words_of("COLOR"),
-        "sizes": [*known.words_of("SCALE"), "a measure such as 20 cm or 2 kg"],
-        "what they do": sorted(known.particles),
-        "where": [*known.words_of("SIDE"), "on", "in", "between"],
-    }
-    return "\n".join(textwrap.fill(f"{kind}: {', '.join(words)}", 80) for kind, words in kinds.items())
+__all__ = ["NOT_IN_THIS_ORDER", "NotUnderstood", "parse"]
 
 
 def parse(prompt: str) -> list[Clause]:

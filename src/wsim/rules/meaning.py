@@ -47,8 +47,9 @@ def _clause(reader: Reader, clause: Clause) -> None:
             pending = []
         for said in phrase.clauses:
             _together(reader, found, said)
-    for thing in subjects if clause.within is not None else []:
-        _within(reader, thing, clause.within)
+    if clause.within is not None:
+        for thing in subjects:
+            _within(reader, thing, clause.within)
     if any(phrase.kind not in ("choice", "pronoun", "part") for phrase in clause.subjects):
         reader.spoken, reader.chosen = [*subjects], []
     for action in clause.actions:
@@ -68,7 +69,9 @@ def _clause(reader: Reader, clause: Clause) -> None:
 def _together(reader: Reader, subjects: list[Thing], action: Action) -> None:
     """Let some things do what is said: two that go at each other as a pair, the rest each for itself."""
     each_other = [place for place in action.places if place.phrase is not None and place.phrase.part in EACH_OTHER]
-    meets = action.verb in ("collide", "hit", "touch") and not any(p.preposition in ("with", "into") for p in action.places)
+    meets = action.verb in ("collide", "hit", "touch") and not any(
+        p.preposition in ("with", "into") for p in action.places
+    )
     if (meets and (action.target is None or action.target.part in EACH_OTHER)) or (
         each_other and action.verb in ("roll", "slide", "move", "push", "run")
     ):
@@ -127,7 +130,7 @@ def _places_of(action: Action) -> list[Phrase]:
 
 
 def _say(reader: Reader, phrase: Phrase, subjects: list[Thing]) -> None:
-    """What a relative clause says of a thing that another clause names; of what stands still it says it of the subject."""
+    """What a relative clause says of a thing that another clause names; if that stands still, of the subject."""
     inner = [phrase.owner] if phrase.owner is not None else []
     for each in [*inner, *([phrase.members] if phrase.members is not None else [])]:
         _say(reader, each, subjects)
@@ -199,9 +202,7 @@ def _settle(reader: Reader) -> None:
     for thing in [one for one in reader.cast.things if one.count > 1 and one.noun.family in _SINGLE]:
         reader.split(thing)
     for thing in reader.cast.things:
-        if thing.target is not None and thing.target.support is None and thing.support is not None:
-            if thing.support.noun.family == "furniture" and thing.target.noun.family == "solid" and not thing.off:
-                thing.target.support = thing.support  # both are on the table
+        _share_table(thing)
         _check_used(thing)
         if thing.place is not None:
             continue
@@ -234,6 +235,15 @@ _SINGLE = ("ramp", "seesaw", "belt", "turntable")  # families that are built one
 def _sides(thing: Thing) -> list[Beside]:
     """The rows that say where it is; neighbours in water are its row there."""
     return [beside for beside in thing.beside if beside.predicate != "beside"]
+
+
+def _share_table(thing: Thing) -> None:
+    """What is hit by a thing that goes along a table stands on that table, too."""
+    target, on = thing.target, thing.support
+    if target is None or on is None or target.support is not None or thing.off:
+        return
+    if on.noun.family == "furniture" and target.noun.family == "solid":
+        target.support = on
 
 
 def _posed(thing: Thing) -> bool:

@@ -11,7 +11,7 @@ from wsim.rules.tokens import NOT_IN_THIS_ORDER, NotUnderstood
 
 SURFACES = {"friction": 2.0, "restitution": 1.0}  # what of a surface may be said, and its most
 MANNERS = ("head_on", "from_rest", "still", "together", "upright", "freely", "to_and_fro", "again", "level", "in_turn",
-           "beside", "on_side")  # fmt: skip
+           "beside", "on_side", "stacked")  # fmt: skip
 CARRIED = ("solid", "vessel")  # families of what may stand on something
 SIDES = ("LEFT-OF", "RIGHT-OF", "FRONT-OF", "BACK-OF")
 
@@ -22,7 +22,11 @@ def stand(reader: Reader, thing: Thing, places: list[Place]) -> None:
         if common(reader, thing, place):
             continue
         at = place.phrase
-        if place.length is not None or place.preposition not in ("in", "inside", "on", "at", "into", "onto") or at is None:
+        if (
+            place.length is not None
+            or place.preposition not in ("in", "inside", "on", "at", "into", "onto")
+            or at is None
+        ):
             raise NotUnderstood([f"{thing.words} {place.words}"], "knows these words, but cannot place them")
         if at.kind == "group" and at.members is None and place.preposition in ("in", "into"):
             arrange(reader, thing, at.arrangement)
@@ -81,6 +85,8 @@ def common(reader: Reader, thing: Thing, place: Place) -> bool:
         if thing.path.phrase.angle not in (None, place.value):
             raise UserError(f"{place.words!r}: the prompt gives the ramp {thing.path.phrase.angle:g} degrees before")
         thing.path.phrase.angle = place.value
+    elif place.preposition == "stacked":
+        arrange(reader, thing, "stack")
     elif place.preposition in MANNERS:
         thing.manners.add(place.preposition)
     elif place.preposition == "often":
@@ -175,14 +181,12 @@ def _between(reader: Reader, thing: Thing, place: Place) -> None:
         pair = reader.thing(place.phrase) if place.phrase.kind in lexicon().nouns else None
         if pair is None or pair.count != 2 or pair.group:
             raise NotUnderstood([place.words], "needs to be told between which two things:")
-        first, second = reader.split(pair)
-        _put_between(reader, thing, place, first, second)
+        _put_between(thing, place, *reader.split(pair))
         return
-    first, second = where(reader, place.phrase, thing), where(reader, place.other)
-    _put_between(reader, thing, place, first, second)
+    _put_between(thing, place, where(reader, place.phrase, thing), where(reader, place.other))
 
 
-def _put_between(reader: Reader, thing: Thing, place: Place, first: str | Thing, second: str | Thing) -> None:
+def _put_between(thing: Thing, place: Place, first: str | Thing, second: str | Thing) -> None:
     if not isinstance(first, Thing) or not isinstance(second, Thing) or len({thing, first, second}) < 3:
         raise NotUnderstood([place.words], "places things between two other things, not so:")
     thing.beside.append(Beside("between", first, second))
@@ -268,7 +272,9 @@ def hang(reader: Reader, thing: Thing, rod: Thing) -> None:
     """Hang a thing, or each of several, on a rod or a rope, which is then no thing of its own."""
     counted = rod.phrase.count not in (None, 1, thing.count)
     if counted or thing.noun.family != "solid" or (rod.noun.family == "rod" and not thing.round):
-        raise NotUnderstood([f"{thing.words} on {rod.words}"], "hangs balls on rods, and solid things on ropes, but not")
+        raise NotUnderstood(
+            [f"{thing.words} on {rod.words}"], "hangs balls on rods, and solid things on ropes, but not"
+        )
     reader.cast.things = [one for one in reader.cast.things if one is not rod]
     thing.rod = rod.phrase
     put(thing, "ground")

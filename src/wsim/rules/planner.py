@@ -20,12 +20,11 @@ from wsim.plan.schema import Plan, SimulationPlan
 from wsim.plan.views import cameras
 from wsim.rules.cast import Cast
 from wsim.rules.grammar import parse
-from wsim.rules.tokens import NotUnderstood
 from wsim.rules.lexicon import lexicon
 from wsim.rules.meaning import understand
 from wsim.rules.scenes.bounce import contacts
 from wsim.rules.scenes.carried import build_carried
-from wsim.rules.scenes.catalogue import themselves
+from wsim.rules.scenes.catalogue import in_vessels, themselves
 from wsim.rules.scenes.crossing import build_crossing
 from wsim.rules.scenes.drive import build_drive
 from wsim.rules.scenes.ground import build_ground
@@ -38,6 +37,7 @@ from wsim.rules.scenes.pour import build_pour
 from wsim.rules.scenes.seesaw import build_seesaws
 from wsim.rules.scenes.tank import build_tank
 from wsim.rules.steps import steps
+from wsim.rules.tokens import NotUnderstood
 
 __all__ = ["NotUnderstood", "plan"]
 
@@ -65,7 +65,7 @@ def plan(prompt: str) -> Plan:
             duration=duration, spacing=scene.spacing, frame_rate=scene.frame_rate or FRAME_RATE
         ),
     }
-    joined = {name for joint in scene.joints for name in (joint.child, joint.parent)}
+    joined = {name for joint in scene.joints for name in (joint.child, joint.parent) if name is not None}
     placed = layout(Plan(objects=themselves(scene.objects, scene.names, cast, joined), **common))
     _hang(scene, placed)
     whole = set_down(Plan(objects=[*placed.objects, *scene.posed], joints=scene.joints, **common))
@@ -73,7 +73,7 @@ def plan(prompt: str) -> Plan:
         {
             **whole.model_dump(),
             "contacts": [*scene.contacts, *contacts(cast, scene.names, whole)],
-            "objectives": scene.objectives,
+            "objectives": in_vessels(scene.objectives, whole.objects),
             "cameras": scene.cameras or cameras(whole, above=scene.surface, goes=scene.goes),
             "steps": steps(whole),
             "assumptions": cast.assumptions,
@@ -118,7 +118,7 @@ def _hang(scene: Part, placed: Plan) -> None:
 
 def _free(scene: Part, made: Part) -> float:
     """How far along Y a part has to go to be beside what is there [m]."""
-    low, high = scene.span
+    _, high = scene.span
     if not any(item.pose is not None for item in (*scene.objects, *scene.posed)):
         tank = next((item for item in scene.objects if item.primitive == "tank"), None)
         if tank is None:

@@ -101,7 +101,9 @@ class Reader:
             if owner is None:
                 raise NotUnderstood([phrase.words], "cannot tell of what this is a part")
             other = {"left": "right", "right": "left"}
-            owner.side = other.get(self._end_of(owner), "other") if phrase.choice == "other" else phrase.choice or owner.side
+            owner.side = (
+                other.get(self._end_of(owner), "other") if phrase.choice == "other" else phrase.choice or owner.side
+            )
             return [owner]
         if phrase.nth is not None and phrase.definite:
             return self._choose(replace(phrase, choice="nth", kind="choice", owner=None), phrase)

@@ -82,9 +82,10 @@ def size_of(thing: Thing, material: Material, water_density: float, cast: Cast) 
     why = "the prompt gives no size"
     vessel = thing.inside or thing.into
     if vessel is not None and noun.asset is None:  # what the catalogue has is as large as it is
-        fitting = _fitting(size, _mouth(vessel.noun), _PLAY if thing.into is None else _LANDING)
-        why = why if fitting == size else f"so that it goes into {vessel.words}"
-        size = fitting
+        scaled = tuple(edge * (phrase.scale or 1.0) for edge in size)
+        fitting = _fitting(scaled, _mouth(vessel.noun), _PLAY if thing.into is None else _LANDING)
+        why = why if fitting == scaled else f"so that it goes into {vessel.words}"
+        size = tuple(edge / (phrase.scale or 1.0) for edge in fitting)
     if noun.family == "vessel" and phrase.length is None:
         size, why = _roomy(thing, size, cast, why)
     if phrase.shape is not None:
@@ -111,7 +112,9 @@ def _mouth(noun: Noun) -> tuple[float, ...]:
 def _roomy(thing: Thing, size: tuple[float, ...], cast: Cast, why: str) -> tuple[tuple[float, ...], str]:
     """A vessel larger than usual where a catalogue's thing, which is as large as it is, goes into it [m]."""
     loads = [one for one in cast.things if thing in (one.inside, one.into) and one.noun.asset is not None]
-    widest = max((2 * one.noun.size[0] if len(one.noun.size) < 3 else max(one.noun.size[:2]) for one in loads), default=0)
+    widest = max(
+        (2 * one.noun.size[0] if len(one.noun.size) < 3 else max(one.noun.size[:2]) for one in loads), default=0
+    )
     share = widest / (_PLAY * min(_mouth(thing.noun)[:2]))
     if share <= 1.0:
         return size, why

@@ -85,14 +85,14 @@ class Tokens:
         rest = [word for word, (start, _) in zip(self.words, self.spans, strict=True) if start >= position]
         return NotUnderstood([" ".join(rest[:_SHOWN] or self.words[-1:])], NOT_IN_THIS_ORDER)
 
-    def _token(self, kind: str, value: Any, at: int, used: int) -> tuple[Token, int]:
+    def _token(self, kind: str, value: Any, at: int, used: int) -> tuple[Meant, int]:
         start, end = self.spans[at][0], self.spans[at + used - 1][1]
         place = {"line": 1, "column": start, "end_line": 1, "end_column": end, "end_pos": end}
         token = Meant(kind, self.text[start:end], start, **place)
         token.meaning = value
         return token, used
 
-    def _entry(self, at: int) -> tuple[Token, int] | None:
+    def _entry(self, at: int) -> tuple[Meant, int] | None:
         for used in range(min(self.known.longest, len(self.words) - at), 0, -1):
             entry = self.known.entries.get(tuple(self.words[at : at + used]))
             if entry is None or (_named(entry.value) == "pontoon" and not {*_CROSSES} & {*self.words}):
@@ -101,7 +101,7 @@ class Tokens:
             return self._token(kind, entry.value, at, used)
         return None
 
-    def _measure(self, at: int) -> tuple[Token, int] | None:
+    def _measure(self, at: int) -> tuple[Meant, int] | None:
         """A number, with its unit if it has one."""
         found = self._number(at)
         if found is None:
@@ -131,14 +131,14 @@ class Tokens:
         half = here[1:] == ["and", "a", "half"]
         return float(entry.value) + 0.5 * half, 4 if half else 1
 
-    def _often(self, at: int) -> tuple[Token, int] | None:
+    def _often(self, at: int) -> tuple[Meant, int] | None:
         """ "3 times", "twice"."""
         number = self._number(at)
         if number is None or self.words[at + number[1] : at + number[1] + 1] not in [[word] for word in _TIMES]:
             return None
         return self._token("TIMES", int(number[0]), at, number[1] + 1)
 
-    def _edges(self, at: int) -> tuple[Token, int] | None:
+    def _edges(self, at: int) -> tuple[Meant, int] | None:
         """ "20 x 10 x 5 cm", "20 by 10 by 5 cm"."""
         here = self.words[at : at + 6]
         if len(here) < 6 or {here[1], here[3]} - {"x", "by"} or not all(here[i][0].isdigit() for i in (0, 2, 4)):

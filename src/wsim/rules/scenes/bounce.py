@@ -40,7 +40,9 @@ def bounce(thing: Thing, item: PlanObject, on: PlanObject, part: Part, cast: Cas
     formula = CollidesWith(object=item.name, ref=on.name, restitution=value)
     often = []
     if thing.times is not None and thing.times > 1:
-        again = Then(events=(CollidesWith(object=item.name, ref=on.name),) * thing.times, windows=(None,) * (thing.times - 1))
+        again = Then(
+            events=(CollidesWith(object=item.name, ref=on.name),) * thing.times, windows=(None,) * (thing.times - 1)
+        )
         often.append(asked(item.name, f"{item.name} bounces off {on.name} {thing.times} times.", again))
     return [asked(item.name, sentence, formula), *often, *to_and_fro(thing, item.name, "z", value**2, cast)]
 

@@ -120,7 +120,9 @@ def _belt_speed(belt: Thing, riders: list[Thing], cast: Cast) -> float:
     if len(set(given)) > 1:
         raise UserError(f"{belt.words!r}: what it carries goes as fast as it does; the prompt gives {given} m/s")
     if not given and any(thing.into is not None for thing in riders):
-        cast.assume(belt.words, f"runs at {INTO_SPEED:g} m/s along +X", "so that what leaves it comes down in its vessel")
+        cast.assume(
+            belt.words, f"runs at {INTO_SPEED:g} m/s along +X", "so that what leaves it comes down in its vessel"
+        )
         return INTO_SPEED
     if not given:
         cast.assume(belt.words, f"runs at {BELT_SPEED:g} m/s along +X", "the prompt gives no speed")

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from wsim.assets import get
-from wsim.plan.schema import External, FromAsset, PlanObject, Registration, Relation
+from wsim.plan.schema import External, FromAsset, Objective, PlanObject, Registration, Relation
+from wsim.plan.schema.formula_contact import LiesOn
+from wsim.plan.schema.formula_place import ContainedIn
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.scenes.bounce import bounces
 
@@ -11,7 +13,9 @@ _ANCHORS = ("seat", "shelf_3", "shelf_2", "top")  # where things stand on one, i
 _LOWER = 0.01  # that an anchor must be below the highest point to be named [m]
 
 
-def themselves(objects: list[PlanObject], names: dict[int, list[str]], cast: Cast, joined: set[str]) -> list[PlanObject]:
+def themselves(
+    objects: list[PlanObject], names: dict[int, list[str]], cast: Cast, joined: set[str]
+) -> list[PlanObject]:
     """The objects, each stand-in of a catalogue's thing replaced by that thing if it is as large, and starts at rest.
 
     Args:
@@ -21,7 +25,7 @@ def themselves(objects: list[PlanObject], names: dict[int, list[str]], cast: Cas
         joined: Names of what joints hold, which keep their shape.
     """
     things = {name: thing for thing in cast.things for name in names.get(id(thing), [])}
-    made = {item.name: _itself(item, things[item.name]) for item in objects
+    made = {item.name: _itself(item, things[item.name], cast) for item in objects
             if item.name in things and item.name not in joined}  # fmt: skip
     found = {name: item for name, item in made.items() if item is not None}
     whole = {id(things[name]) for name in found}
@@ -33,7 +37,7 @@ def themselves(objects: list[PlanObject], names: dict[int, list[str]], cast: Cas
     return [_on_anchors(found.get(item.name, item), found) for item in objects]
 
 
-def _itself(item: PlanObject, thing: Thing) -> PlanObject | None:
+def _itself(item: PlanObject, thing: Thing, cast: Cast) -> PlanObject | None:
     """The catalogue's thing in place of its stand-in; None where that is another."""
     noun, phrase = thing.noun, thing.phrase
     own = isinstance(item.construction, External) and (noun.mass is not None) and item.size == noun.size
@@ -42,14 +46,33 @@ def _itself(item: PlanObject, thing: Thing) -> PlanObject | None:
     rubs = any(name != "friction" for _, name, _ in thing.pairs)
     if not own or said or moves or rubs or bounces(thing) or noun.asset is None or thing.bridges is not None:
         return None
+    if cast.pour is not None and cast.pour.vessel is thing:
+        return None  # water is poured into a tank, whose room the judge knows
     if item.pose is not None and (item.primitive != "tank" or any(item.pose.rotation_deg)):
         return None
     rows = [row for row in item.relations if not row.predicate.startswith("LIES-ALONG")]
     if len(rows) < len(item.relations):
         return None
-    return item.model_copy(
-        update={"construction": FromAsset(asset=noun.asset), "material": None, "registration": Registration()}
-    )
+    role = "background" if item.role == "container" else item.role
+    itself = {"construction": FromAsset(asset=noun.asset), "material": None, "registration": Registration()}
+    return item.model_copy(update={"role": role, **itself})
+
+
+def in_vessels(objectives: list[Objective], objects: list[PlanObject]) -> list[Objective]:
+    """The objectives; of what is in a vessel of the catalogue, that it lies on it: only of tanks is the room known."""
+    own = {item.name for item in objects if item.primitive == "asset"}
+    return [_lying_in(one) if _vessel(one) in own else one for one in objectives]
+
+
+def _vessel(objective: Objective) -> str | None:
+    if isinstance(objective.formula, ContainedIn):
+        return objective.formula.ref
+    return objective.ref if objective.kind == "stays_inside" else None
+
+
+def _lying_in(objective: Objective) -> Objective:
+    lies = LiesOn(object=objective.object, ref=_vessel(objective) or "")
+    return Objective(kind="formula", object=objective.object, sentence=objective.sentence, formula=lies)
 
 
 def _on_anchors(item: PlanObject, found: dict[str, PlanObject]) -> PlanObject:

@@ -14,6 +14,7 @@ from wsim.rules.scenes.lasting import asked
 from wsim.rules.scenes.part import fall_time
 
 AT_ONCE = 1.5  # times g r: of the square of the speed at which a ball's middle leaves an edge without turning round it
+DULL = 0.05  # restitution of what lands in a vessel
 CLEAR = 0.03  # between the edge and the vessel [m]
 
 
@@ -48,17 +49,28 @@ def catcher(
     drop = height - rim
     if drop < reach(item):
         raise UserError(
-            f"{thing.into.words!r}: its rim is {rim:.2g} m high, too near to the edge at {height:.2g} m; leave one lower"
+            f"{thing.into.words!r}: its rim is {rim:.2g} m high, too near to the edge at {height:.2g} m; take a lower "
+            "one"
         )
     time, half = fall_time(drop), vessel.size[0] / 2 + WALL
     least = max(math.sqrt(AT_ONCE * GRAVITY * reach(item)), (half + CLEAR) / time)
     at = speed if speed is not None else math.ceil(100 * least) / 100
     way = at * time
     if way < half:
-        raise UserError(f"{thing.words!r}: at {at:.2g} m/s it falls {way:.2g} m from the edge, too near; give more speed")
+        raise UserError(
+            f"{thing.words!r}: at {at:.2g} m/s it falls {way:.2g} m from the edge, too near; give more speed"
+        )
     choice = f"its middle {way:.3g} m from the edge"
     cast.assume(thing.into.words, choice, f"there a parabola at {at:.3g} m/s comes through its mouth")
+    deaden(thing, thing.into, cast)
     return Caught(vessel, round(way - half, 3), round(way, 3), at)
+
+
+def deaden(thing: Thing, vessel: Thing, cast: Cast) -> None:
+    """A vessel that gives way, so that what lands in it stays there, where the prompt says nothing of that."""
+    if thing.said("restitution", vessel) is None:
+        thing.pairs.append((vessel, "restitution", DULL))
+        cast.assume(thing.words, f"a restitution of {DULL:g} in {vessel.words}", "so that it does not bounce out again")
 
 
 def reach(item: PlanObject) -> float:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.layout.bodies import around
-from wsim.plan.schema.predicates import OVERLAP
 from wsim.plan.schema import Objective, PlanObject, Relation
 from wsim.plan.schema.formula_contact import CollidesWith
+from wsim.plan.schema.predicates import OVERLAP
 from wsim.rules.cast import Beside, Cast, Thing
 from wsim.rules.places import SIDES
 from wsim.rules.scenes.bounce import bounce, bounces
@@ -37,8 +37,13 @@ def build_ground(cast: Cast, taken: set[str], scene: Part) -> Part:
     _part_bridged(things)
     for thing in things:
         for beside in thing.beside:
-            if not any(item.name in scene.names.get(id(beside.ref), []) for item in scene.objects) and id(beside.ref) in scene.names:
-                raise UserError(f"{thing.words!r} beside {beside.ref.words!r}: the builtin planner builds nothing there")
+            if (
+                not any(item.name in scene.names.get(id(beside.ref), []) for item in scene.objects)
+                and id(beside.ref) in scene.names
+            ):
+                raise UserError(
+                    f"{thing.words!r} beside {beside.ref.words!r}: the builtin planner builds nothing there"
+                )
     ends = _Ends(scene, still=not any(_goes(thing) for thing in things))
     catches = [thing.into for thing in things if thing.into is not None]
     for thing in catches:

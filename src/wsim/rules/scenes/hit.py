@@ -1,4 +1,4 @@
-"""What goes along +X into things, or at each other, on the ground or on a table; and what stands before a ramp's foot."""
+"""What goes along +X into things, or at each other, on the ground or a table; what stands before a ramp's foot."""
 
 from __future__ import annotations
 
@@ -10,13 +10,14 @@ from wsim.plan.schema import Objective, PlanObject, Relation
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.scenes.bounce import restitution, returned
 from wsim.rules.scenes.lasting import stops
-from wsim.rules.scenes.motion import SLIDE_SPEED, aimed_at, check_round, falls_off, ground_object, item_of, started, top
+from wsim.rules.scenes.motion import SLIDE_SPEED, aimed_at, check_round, falls_off, ground_object, item_of, started
 from wsim.rules.scenes.part import Part, pair_friction, stopping_distance, tall
 from wsim.rules.sizes import bodies
 
 HIT_SPEED = 3.0  # [m/s]
 ROLL_DISTANCE, SLIDE_DISTANCE = 0.6, 0.3  # from what moves to what it hits, at least [m]
 TABLE_DISTANCE = 0.1  # the same on a table
+TABLE_SPEED, QUICK = 2.0, 60.0  # on one [m/s], and pictures a second, so that a short way to a blow is seen [1/s]
 APPROACH = 0.6  # that it takes what rolls to get there [s]
 STOP_ROOM = 1.3  # times the way that theory gives it to its stop, from what slides to what it stops before
 SLIDE_SHARE = 0.6  # of the way to its stop, after which what slides hits
@@ -36,7 +37,9 @@ def hit(thing: Thing, cast: Cast, taken: set[str], part: Part) -> None:
         raise UserError(f"{thing.words!r}: the builtin planner rolls one ball into one thing")
     flies = "throw" in thing.does
     if target.inside is not None or thing.direction or (thing.support is not target.support and not flies):
-        raise UserError(f"{thing.words!r}: the builtin planner lets things that stand on one surface be hit, from behind")
+        raise UserError(
+            f"{thing.words!r}: the builtin planner lets things that stand on one surface be hit, from behind"
+        )
     check_round(thing)
     [item] = bodies(thing, cast, taken)
     part.duration = max(part.duration, 4.0 if target.group else 2.0)
@@ -90,7 +93,7 @@ def _on_table(thing: Thing, target: Thing, item: PlanObject, cast: Cast, part: P
     friction = pair_friction(met, carrier)
     needed = SPARE * math.sqrt(2 * friction * GRAVITY * _deep(met) / 2) if target.off else 0.0
     masses = item.mass or 1.0, met.mass or 1.0
-    speed = thing.speed or max(MEET_SPEED, math.ceil(10 * needed * sum(masses) / masses[0]) / 10)
+    speed = thing.speed or max(TABLE_SPEED, math.ceil(10 * needed * sum(masses) / masses[0]) / 10)
     if _slides(thing) and thing.speed is None:
         own = pair_friction(item, carrier)
         speed = math.ceil(10 * math.sqrt(speed**2 + 2 * own * GRAVITY * distance)) / 10
@@ -99,7 +102,7 @@ def _on_table(thing: Thing, target: Thing, item: PlanObject, cast: Cast, part: P
     item = started(item, (speed, 0.0, 0.0), rolls=not _slides(thing))
     _add(thing, target, item, [Relation(predicate="PLACE-ON", ref=carrier.name)], distance, cast, part)
     part.goes[met.name] = [(GOES_ON, 0.0, -tall(carrier) if target.off else 0.0)]
-    part.duration = max(part.duration, 2.0)
+    part.duration, part.frame_rate = max(part.duration, 2.0), max(part.frame_rate, QUICK)
     if target.off:
         index = part.objects.index(met)
         part.objects[index] = met.related([*met.relations, Relation(predicate="ALIGN-FRONT", ref=carrier.name)])
@@ -239,5 +242,3 @@ def meet(thing: Thing, cast: Cast, taken: set[str], part: Part) -> None:
     part.duration = max(2.0, round(distance / speed + 1.0, 1)) if part.duration <= 3.0 else part.duration
     _part_again(pair, distance, speed, all(rolls), cast, part)
     _collision(pair[0].name, pair[1].name, part)
-
-

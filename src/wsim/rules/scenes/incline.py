@@ -161,7 +161,11 @@ def _suit(thing: Thing, item: PlanObject, ramp: Thing, slab: PlanObject, angle: 
         wanted = math.ceil(100 * ROUGHER * slope) / 100
     if wanted is not None:
         thing.pairs.append((ramp, "friction", wanted))
-        cast.assume(thing.words, f"a friction of {wanted:g} on the ramp", f"so that it does as it is said to at {angle:g} degrees")
+        cast.assume(
+            thing.words,
+            f"a friction of {wanted:g} on the ramp",
+            f"so that it does as it is said to at {angle:g} degrees",
+        )
 
 
 def _warn(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, cast: Cast) -> None:

@@ -52,7 +52,7 @@ def turns(name: str, rate: float) -> Objective:
 
 
 def leans(name: str, angle: float, most: float, words: str, sign: float = 1.0) -> Objective:
-    """A plank goes down at its front, or with a sign of -1 at its back, by an angle [deg], which there is room for up to another.
+    """A plank goes down at its front, or its back with a sign of -1, by an angle [deg], with room up to another.
 
     Raises:
         UserError: there is not that much room.

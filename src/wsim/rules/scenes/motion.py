@@ -10,9 +10,19 @@ from wsim.plan.schema import Objective, PlanObject, Relation, Vec3
 from wsim.plan.schema.formula_motion import Drops
 from wsim.rules.cast import ROUND, Cast, Thing
 from wsim.rules.materials import GROUND_LOOK, material_named
-from wsim.rules.scenes.catch import catcher, lands, reach
+from wsim.rules.scenes.catch import catcher, deaden, lands, reach
 from wsim.rules.scenes.lasting import asked
-from wsim.rules.scenes.part import DIRECTIONS, MOST_SPEED, Part, fall_time, pair_friction, stopping_distance, tall, tidy, times
+from wsim.rules.scenes.part import (
+    DIRECTIONS,
+    MOST_SPEED,
+    Part,
+    fall_time,
+    pair_friction,
+    stopping_distance,
+    tall,
+    tidy,
+    times,
+)
 
 ROLL_SPEED, SLIDE_SPEED, PUSH_SPEED = 1.0, 2.0, 1.5  # [m/s]
 STOP_WAY = 1.5  # after which a ball that is to stop has stopped [m]
@@ -65,7 +75,14 @@ def move(thing: Thing, item: PlanObject, cast: Cast, part: Part, below: str | No
 
 
 def _into(
-    thing: Thing, item: PlanObject, carrier: PlanObject, how: str, friction: float, direction: str, cast: Cast, part: Part
+    thing: Thing,
+    item: PlanObject,
+    carrier: PlanObject,
+    how: str,
+    friction: float,
+    direction: str,
+    cast: Cast,
+    part: Part,
 ) -> PlanObject:
     """What leaves a table so fast that it comes down in its vessel; the vessel has its place from this."""
     way = carrier.size[0 if direction in ("front", "back") else 1] / 2 if carrier.size else 0.0
@@ -125,6 +142,11 @@ def started(item: PlanObject, velocity: Vec3, *, rolls: bool) -> PlanObject:
 
 
 def check_round(thing: Thing) -> None:
+    """See that a thing can roll if it is to, and that its speed is in range.
+
+    Raises:
+        UserError: It cannot, or its speed is not.
+    """
     if "roll" in thing.does and thing.noun.primitive not in ROUND:
         raise UserError(f"{thing.words!r}: the builtin planner rolls balls, barrels and the like")
     if thing.speed is not None and not 0.0 < thing.speed <= MOST_SPEED:
@@ -226,7 +248,11 @@ def _thrown_into(
     part.caught.append(vessel.related(rows))
     part.objectives = [o for o in part.objectives if (o.object, o.kind) != (item.name, "moves")]
     part.objectives.append(lands(item.name, vessel.name))
-    cast.assume(thing.into.words, f"{gap:g} m from where the throw begins", "there the parabola comes through its mouth")
+    deaden(thing, thing.into, cast)
+    part.duration = max(part.duration, round(time + 2.5, 1))
+    cast.assume(
+        thing.into.words, f"{gap:g} m from where the throw begins", "there the parabola comes through its mouth"
+    )
 
 
 def _arc(level: Vec3, along: float, up: float, time: float) -> list[Vec3]:

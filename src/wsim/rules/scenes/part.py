@@ -71,7 +71,6 @@ class Part:
         self.spacing = self.spacing or other.spacing
         self.surface = self.surface if self.surface is not None else other.surface
 
-
     def shifted(self, y: float) -> Part:
         """The part moved along Y [m]: all of it that has a pose."""
         return replace(self, objects=[_moved(o, y) for o in self.objects], posed=[_moved(o, y) for o in self.posed])

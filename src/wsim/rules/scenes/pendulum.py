@@ -1,4 +1,4 @@
-"""Pendulums, and what hangs on rods and ropes: each on a hinge in the world, at rest, swinging, or into what it hits."""
+"""Pendulums, and what hangs on rods and ropes: on a hinge in the world, at rest, swinging, or into what it hits."""
 
 from __future__ import annotations
 
@@ -73,7 +73,8 @@ def _hang(hanging: Hanging, cast: Cast, taken: set[str]) -> Part:
     taken |= {"pivot"} if first else set()
     tail = "" if first else f"_{body.name}"
     part.joints = [
-        Joint(name=f"pivot{tail}", kind="hinge", child=rod.name, anchor=(0.0, 0.0, rod.size[1] / 2), axis="Y", drive=damped),
+        Joint(name=f"pivot{tail}", kind="hinge", child=rod.name, anchor=(0.0, 0.0, rod.size[1] / 2), axis="Y",
+              drive=damped),
         Joint(name=f"hold{tail}", kind="fixed", parent=rod.name, child=body.name, anchor=(0.0, 0.0, hanging.half)),
     ]  # fmt: skip
     _ask(hanging, body, angle, struck, part, cast)
@@ -106,12 +107,15 @@ def _pose(hanging: Hanging, turn: float, height: float, cast: Cast, taken: set[s
         return Pose(position=position, rotation_deg=(0.0, tidy(-math.degrees(turn)), 0.0))
 
     made = PlanObject.proxy(
-        name=name, role="mechanism", primitive="cylinder", size=(ROPE_RADIUS if hanging.rope else ROD_RADIUS, rod_length),
-        material=material_named("plastic" if hanging.rope else "aluminium"), pose=at(rod_length / 2),
+        name=name, role="mechanism", primitive="cylinder",
+        size=(ROPE_RADIUS if hanging.rope else ROD_RADIUS, rod_length), material=material_named("plastic" if hanging.rope else "aluminium"),
+        pose=at(rod_length / 2),
         words=thing.rod.words if thing.rod else "",
     )  # fmt: skip
     if hanging.rope:
-        cast.assume(thing.rod.words if thing.rod else thing.words, "a thin straight link", "a rope under load is straight")
+        cast.assume(
+            thing.rod.words if thing.rod else thing.words, "a thin straight link", "a rope under load is straight"
+        )
     return made, hanging.item.related([]).model_copy(update={"pose": at(length)})
 
 

@@ -108,14 +108,16 @@ def _ride(thing: Thing, item: PlanObject, side: str, plank: PlanObject, part: Pa
     return part.posed[-1]
 
 
-def _ask(
-    seesaw: Thing, plank: PlanObject, loads: list[tuple[Thing, PlanObject, str]], part: Part, cast: Cast
-) -> None:
+def _ask(seesaw: Thing, plank: PlanObject, loads: list[tuple[Thing, PlanObject, str]], part: Part, cast: Cast) -> None:
     """Which end goes down: that on which something falls, else the heavier."""
     if not loads and (seesaw.angle is not None or seesaw.side is not None or "tilt" in seesaw.does):
         raise UserError(f"{seesaw.words!r}: nothing is on it that could tilt it; name what stands or falls on it")
     falls = [load for load in loads if "drop" in load[0].does]
-    moment = sum(SIGN[side] * (item.mass or 0.0) for thing, item, side in loads if not falls or any(thing is load[0] for load in falls))
+    moment = sum(
+        SIGN[side] * (item.mass or 0.0)
+        for thing, item, side in loads
+        if not falls or any(thing is load[0] for load in falls)
+    )
     level = abs(moment) < 1e-9 if falls == [] else len(falls) == 2 and abs(moment) < 1e-9
     if "level" in seesaw.does or level:
         if not level:
@@ -124,8 +126,8 @@ def _ask(
         sentence = f"{plank.name} stays level and at rest."
         part.objectives.append(Objective(kind="settles", object=plank.name, sentence=sentence))
         if loads:
-            formula = Always(of=TiltBetween(object=plank.name, axis="x", low=-LEVEL, high=LEVEL))
-            part.objectives.append(asked(plank.name, f"{plank.name} stays level, to {LEVEL:g} degrees.", formula))
+            always = Always(of=TiltBetween(object=plank.name, axis="x", low=-LEVEL, high=LEVEL))
+            part.objectives.append(asked(plank.name, f"{plank.name} stays level, to {LEVEL:g} degrees.", always))
         return
     heavier = "right" if moment > 0 else "left"
     side = seesaw.side if seesaw.side in ("left", "right") else heavier

@@ -74,8 +74,14 @@ def stand_before(thing: Thing, item: PlanObject, part: Part, cast: Cast, taken: 
     """
     target = thing.target
     assert target is not None
-    if target.beside or target.inside is not None or (target.support is not None and target.support.support is not None):
-        raise UserError(f"{target.words!r}: the builtin planner lets a pendulum hit what stands on the ground or a table")
+    if (
+        target.beside
+        or target.inside is not None
+        or (target.support is not None and target.support.support is not None)
+    ):
+        raise UserError(
+            f"{target.words!r}: the builtin planner lets a pendulum hit what stands on the ground or a table"
+        )
     base, carrier = 0.0, None
     if target.support is not None:
         [carrier] = bodies(target.support, cast, taken)

@@ -11,8 +11,8 @@ from wsim.rules.cast import Cast, Thing
 from wsim.rules.scenes.part import Part, tall, tidy
 
 SPARE = 2.0  # of the energy that lifts the middle over the edge, which the push gives
-SLIM, SLENDER, HIGHER = 2.0, 3.0, 1.5  # height against depth of what is made to fall over; against its usual extent
-SLIMMEST = 1.5  # height against depth, below which a thing slides or rocks back rather than tips
+SLIM, SLENDER, HIGHER = 2.0, 6.0, 1.5  # height against depth of what is made to fall over; against its usual extent
+SLIMMEST = 1.3  # height against depth, below which a thing slides or rocks back rather than tips
 
 
 def tipped(thing: Thing, made: list[PlanObject], part: Part, cast: Cast) -> list[PlanObject]:
