@@ -137,6 +137,9 @@ def _off(reader: Reader, thing: Thing, action: Action, off: Place | None) -> Non
         if not isinstance(carrier, Thing) or carrier.noun.family != "furniture":
             raise NotUnderstood([off.words], "knocks things off tables and the like, not off this:")
         support(reader, target, carrier)
+    swings = thing.noun.family == "pendulum" or thing.rod is not None
+    if target.support is not None and thing.support is None and thing.path is None and not swings:
+        support(reader, thing, target.support)
     if target.support is None:
         raise NotUnderstood([action.words], "needs to be told off what:")
     target.off = True

@@ -106,11 +106,10 @@ def _pose(hanging: Hanging, turn: float, height: float, cast: Cast, taken: set[s
         position = (tidy(distance * math.sin(turn)), 0.0, tidy(height - distance * math.cos(turn)))
         return Pose(position=position, rotation_deg=(0.0, tidy(-math.degrees(turn)), 0.0))
 
+    radius, material = (ROPE_RADIUS, "plastic") if hanging.rope else (ROD_RADIUS, "aluminium")
     made = PlanObject.proxy(
-        name=name, role="mechanism", primitive="cylinder",
-        size=(ROPE_RADIUS if hanging.rope else ROD_RADIUS, rod_length), material=material_named("plastic" if hanging.rope else "aluminium"),
-        pose=at(rod_length / 2),
-        words=thing.rod.words if thing.rod else "",
+        name=name, role="mechanism", primitive="cylinder", size=(radius, rod_length), pose=at(rod_length / 2),
+        material=material_named(material), words=thing.rod.words if thing.rod else "",
     )  # fmt: skip
     if hanging.rope:
         cast.assume(
