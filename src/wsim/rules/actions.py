@@ -354,5 +354,5 @@ _RULES: dict[str, Callable[[Reader, Thing, Action], None]] = {
     "carry": _carry, "move": _move, "ride": _ride, "run": _run, "patrol": _patrol, "return": _return,
     "drive": wheels.drive, "cross": wheels.cross, "leave": wheels.leave, "reach": wheels.leave,
     "stop": _stop, "climb": _come_again, "die": _come_again,
-    "stack": _stack, "face": _face, "rest": _rest, "hold": _refused, "pour": _refused,
+    "stack": _stack, "face": _face, "rest": _rest, "start": _rest, "hold": _refused, "pour": _refused,
 }  # fmt: skip

@@ -59,12 +59,26 @@ def fall(reader: Reader, thing: Thing, action: Action) -> None:
     if action.particle == "in":
         put(thing, "water")
     for place in action.places:
-        if place.preposition == "from" and place.length is not None:
+        if place.preposition in ("from", "way") and place.length is not None:
             thing.drop_height = place.length
+        elif place.preposition == "from" and place.phrase is not None and _on_ramp(reader, thing, place):
+            thing.does.remove("drop")
         elif place.preposition == "from":
             raise NotUnderstood([action.words], "needs a height after 'from', as in 'from 0.5 m':")
+        elif place.preposition == "on" and place.phrase is not None and _on_ramp(reader, thing, place):
+            thing.does.remove("drop")
         elif not common(reader, thing, place):
             _land(reader, thing, action, place)
+
+
+def _on_ramp(reader: Reader, thing: Thing, place: Place) -> bool:
+    """Whether what is let go is on a ramp: "from the top of a ramp"."""
+    at = where(reader, place.phrase, thing) if place.phrase is not None else None
+    if not isinstance(at, Thing) or at.noun.family != "ramp" or "drop" not in thing.does:
+        return False
+    support(reader, thing, at)
+    do(thing, "roll" if thing.round else "slide")
+    return True
 
 
 def _let_go(reader: Reader, thing: Thing, action: Action) -> None:
@@ -166,6 +180,8 @@ def bounce(reader: Reader, thing: Thing, action: Action) -> None:
             thing.drop_height = place.length
         elif place.preposition == "share":
             thing.share = place.value
+        elif place.preposition == "toward" and place.direction == "back" and thing.target is not None:
+            continue
         elif isinstance(at, Thing) and place.preposition in ("off", "against") and at.noun.key == "wall":
             walls.append(place)
         elif isinstance(at, Thing) and at is thing.support:

@@ -47,6 +47,8 @@ def go(reader: Reader, thing: Thing, action: Action, how: str) -> None:
             continue
         if place.preposition == "toward":
             thing.direction = place.direction
+        elif place.preposition == "from" and place.phrase is not None and place.phrase.kind == "part":
+            _on_path(reader, thing, action, place)
         elif place.phrase is None or place.preposition in ("from", "inside"):
             raise NotUnderstood([action.words], NOT_IN_THIS_ORDER)
         elif place.preposition in ("on", "along", "down", "off", "via", "over"):

@@ -98,6 +98,12 @@ class _Clauses(Transformer):
 
     bare = full
 
+    def inverted(self, meta: Any, children: list[Any]) -> Clause:
+        """ "On the table stands a bottle"."""
+        subjects = [child for child in children if isinstance(child, Phrase)]
+        verb = "rest" if _is(children[1], "BE") else _meaning(children[1])
+        return Clause(subjects, [Action(verb, self._words(meta), places=[children[0]])])
+
     def within(self, meta: Any, children: list[Any]) -> Place:
         phrase = next(child for child in children if isinstance(child, Phrase))
         phrase.filled = phrase.filled or any(_is(child, "FILLED") for child in children)

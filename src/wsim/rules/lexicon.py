@@ -223,6 +223,8 @@ def _quantities(made: Lexicon, data: dict[str, Any]) -> None:
         for word, value in data[table].items():
             terminal = "TIMES" if table == "often" else table.upper()
             made.add(word, terminal, tuple(value) if isinstance(value, list) else value)
+    for word, angle in data["slope"].items():
+        made.add(word, "ANGLE", angle)
     for word, axis in data["dimension"].items():
         made.add(word, "DIMENSION", axis)
     for kind, units in data["unit"].items():

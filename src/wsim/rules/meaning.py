@@ -7,6 +7,7 @@ from dataclasses import replace
 from wsim.errors import UserError
 from wsim.rules.actions import MOVES, act, meet
 from wsim.rules.cast import CARRIERS, Beside, Cast, Pour, Thing
+from wsim.rules.lexicon import lexicon
 from wsim.rules.phrases import Action, Clause, Phrase, Place
 from wsim.rules.places import common, stand, support
 from wsim.rules.reader import EACH_OTHER, Reader
@@ -50,6 +51,10 @@ def _clause(reader: Reader, clause: Clause) -> None:
     if clause.within is not None:
         for thing in subjects:
             _within(reader, thing, clause.within)
+    whole = [phrase.owner for phrase in clause.subjects if phrase.kind == "choice" and phrase.owner is not None]
+    named = [phrase for phrase in whole if phrase.kind in lexicon().nouns]
+    if named:
+        reader.spoken = [reader.thing(phrase) for phrase in named]
     if any(phrase.kind not in ("choice", "pronoun", "part") for phrase in clause.subjects):
         reader.spoken, reader.chosen = [*subjects], []
     for action in clause.actions:

@@ -167,6 +167,8 @@ class Reader:
             described = phrase.members
         thing = Thing(described, self._count(described, phrase.kind == "group"), arrangement=phrase.arrangement)
         thing.phrase.words = phrase.words
+        if thing.kind == "domino" and thing.count > 1:
+            thing.arrangement = thing.arrangement or "row"
         if phrase.kind == "group" and thing.noun.family != "solid":
             raise NotUnderstood([phrase.words], "stacks what moves, but not this")
         self.cast.things.append(thing)

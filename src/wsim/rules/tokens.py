@@ -75,7 +75,7 @@ class Tokens:
                 token.type, token.meaning = "DIMENSION", token.meaning[0]  # "1 m long"
             if token.type == "SIDE" and tokens and tokens[-1].type == "LENGTH":
                 tokens[-1].type = "OFFSET"  # "20 cm behind": the distance, not a size
-            if token.type == "LENGTH" and _drives(tokens):
+            if token.type == "LENGTH" and (_drives(tokens) or _falls(tokens)):
                 token.type = "WAY"  # "drives 100 m": how far, not the size of what follows
             tokens.append(token)
         return tokens
@@ -156,6 +156,11 @@ def _named(value: Any) -> str:
 def _long_unit(known: Lexicon, words: list[str]) -> bool:
     """Whether "a" may count a unit: "a metre" does, "a second ball" does not."""
     return known.units.get(tuple(words), ("",))[0] in ("LENGTH", "MASS") and len(words[0]) > 2
+
+
+def _falls(tokens: list[Token]) -> bool:
+    """Whether what comes next is how far something falls: "falls 2 m"."""
+    return bool(tokens) and tokens[-1].type == "VERB" and getattr(tokens[-1], "meaning", None) in ("fall", "drop")
 
 
 def _drives(tokens: list[Token]) -> bool:

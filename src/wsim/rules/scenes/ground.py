@@ -114,7 +114,10 @@ def _settle_sides(things: list[Thing], cast: Cast) -> None:
     for _ in things:
         for thing in things:
             for beside in _sides(thing):
-                on = beside.ref.support
+                on, own = beside.ref.support, thing.support
+                if own is not None and own.noun.family == "furniture" and on is None and not beside.ref.does:
+                    on = beside.ref.support = own
+                    cast.assume(beside.ref.words, f"on {own.words}", f"{thing.words} is there")
                 if on is not None and thing.support is None and on is not thing and "drop" not in thing.does:
                     thing.support = on
                     cast.assume(thing.words, f"on {on.words}", f"{beside.ref.words} is there")
