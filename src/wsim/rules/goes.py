@@ -149,10 +149,11 @@ def _off(reader: Reader, thing: Thing, action: Action, off: Place | None) -> Non
 
 def aim(reader: Reader, thing: Thing, phrase: Phrase, action: Action) -> None:
     """Let a thing go into what a phrase names."""
-    if phrase.kind == "pronoun" and thing.target is None and thing.support is None:
+    on = thing.support if thing.support is not None and thing.support.noun.family == "solid" else None
+    if phrase.kind == "pronoun" and thing.target is None and on is None:
         target: str | Thing = reader.it(phrase, thing)
     else:
-        known = thing.target or thing.support if phrase.kind == "pronoun" else None
+        known = thing.target or on if phrase.kind == "pronoun" else None
         target = known or where(reader, phrase, thing)
     if not isinstance(target, Thing) or target is thing or target.noun.family not in HITS:
         raise NotUnderstood([action.words], "lets a thing hit a block, a ball or a stack, not this:")
