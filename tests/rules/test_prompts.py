@@ -60,7 +60,7 @@ def test_what_a_prompt_becomes(expected):
         ("A mug in a table", ["a mug in a table"]),
         ("A table rolls down a ramp", ["a table rolls down a ramp"]),
         ("A ball rolls down a table", ["rolls down a table"]),
-        ("A box under a table", ["under a table"]),
+        ("A box under a shelf", ["under a shelf"]),
         ("A cube swings", ["swings"]),
         ("Water pours onto a box", ["pours onto a box"]),
         ("A ball between three walls", ["between three walls"]),

@@ -13,6 +13,7 @@ SURFACES = {"friction": 2.0, "restitution": 1.0}  # what of a surface may be sai
 MANNERS = ("head_on", "from_rest", "still", "together", "upright", "freely", "to_and_fro", "again", "level", "in_turn",
            "beside", "on_side", "stacked")  # fmt: skip
 CARRIED = ("solid", "vessel")  # families of what may stand on something
+ROOMY = ("table", "desk", "workbench")  # what has room under it
 SIDES = ("LEFT-OF", "RIGHT-OF", "FRONT-OF", "BACK-OF")
 
 
@@ -134,6 +135,12 @@ def _beside(reader: Reader, thing: Thing, place: Place) -> None:
         return
     if not isinstance(other, Thing) or other is thing:
         raise NotUnderstood([place.words], "places things by other things, not so:")
+    if predicate == "under" and other.noun.key in ROOMY and thing.noun.family == "solid" and thing.count == 1:
+        thing.beside.append(Beside("under", other))
+        for one in (thing, other):
+            put(one, "ground")
+        do(thing, "rest")
+        return
     if predicate == "under":
         if other.noun.family != "solid" or (other.support is not None and other.support is not thing):
             raise NotUnderstood(

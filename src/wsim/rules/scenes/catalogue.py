@@ -7,9 +7,11 @@ from wsim.plan.schema import External, FromAsset, Objective, PlanObject, Registr
 from wsim.plan.schema.formula_contact import LiesOn
 from wsim.plan.schema.formula_place import ContainedIn
 from wsim.rules.cast import Cast, Thing
+from wsim.rules.lexicon import Noun, lexicon
 from wsim.rules.scenes.bounce import bounces
 
 _ANCHORS = ("seat", "shelf_3", "shelf_2", "top")  # where things stand on one, in the order of preference
+WOODS = ("oak", "pine")
 _LOWER = 0.01  # that an anchor must be below the highest point to be named [m]
 
 
@@ -25,7 +27,7 @@ def themselves(
         joined: Names of what joints hold, which keep their shape.
     """
     things = {name: thing for thing in cast.things for name in names.get(id(thing), [])}
-    made = {item.name: _itself(item, things[item.name], cast) for item in objects
+    made = {item.name: itself(item, things[item.name], cast) for item in objects
             if item.name in things and item.name not in joined}  # fmt: skip
     found = {name: item for name, item in made.items() if item is not None}
     whole = {id(things[name]) for name in found}
@@ -37,15 +39,24 @@ def themselves(
     return [_on_anchors(found.get(item.name, item), found) for item in objects]
 
 
-def _itself(item: PlanObject, thing: Thing, cast: Cast) -> PlanObject | None:
+def itself(item: PlanObject, thing: Thing, cast: Cast) -> PlanObject | None:
     """The catalogue's thing in place of its stand-in; None where that is another."""
     noun, phrase = thing.noun, thing.phrase
     own = isinstance(item.construction, External) and (noun.mass is not None) and item.size == noun.size
-    said = phrase.material or phrase.color or phrase.measures or phrase.weight or phrase.shape or thing.surface
+    said = (
+        not _is_of(phrase.material, noun)
+        or phrase.color
+        or phrase.measures
+        or phrase.weight
+        or phrase.shape
+        or thing.surface
+    )
     moves = any(item.velocity) or item.angular_velocity_deg or item.rolling
     rubs = any(name != "friction" for _, name, _ in thing.pairs)
     if not own or said or moves or rubs or bounces(thing) or noun.asset is None or thing.bridges is not None:
         return None
+    if any(beside.predicate == "under" and beside.ref is thing for one in cast.things for beside in one.beside):
+        return None  # the layout takes a catalogue's thing for a box: a top on legs has room under it
     if cast.pour is not None and cast.pour.vessel is thing:
         return None  # water is poured into a tank, whose room the judge knows
     if item.pose is not None and (item.primitive != "tank" or any(item.pose.rotation_deg)):
@@ -56,6 +67,16 @@ def _itself(item: PlanObject, thing: Thing, cast: Cast) -> PlanObject | None:
     role = "background" if item.role == "container" else item.role
     itself = {"construction": FromAsset(asset=noun.asset), "material": None, "registration": Registration()}
     return item.model_copy(update={"role": role, **itself})
+
+
+def _is_of(word: str | None, noun: Noun) -> bool:
+    """Whether a catalogue's thing is of what the prompt says: "a wooden table" is the oak one."""
+    if word is None or noun.asset is None:
+        return True
+    asset, material = get(noun.asset), lexicon().materials[word]
+    texts = " ".join([asset.description, *asset.names]).lower().split()
+    kinds = {word, material.name, *(["wood", "wooden", *WOODS] if material.name == "wood" else [])}
+    return bool(kinds & {text.strip(",.") for text in texts}) or noun.material in kinds
 
 
 def in_vessels(objectives: list[Objective], objects: list[PlanObject]) -> list[Objective]:

@@ -12,6 +12,7 @@ from wsim.rules.cast import Beside, Cast, Thing
 from wsim.rules.places import SIDES
 from wsim.rules.scenes.bounce import bounce, bounces
 from wsim.rules.scenes.hit import hit, meet, struck
+from wsim.rules.scenes.legs import on_legs
 from wsim.rules.scenes.motion import ground_object, move, throw_height, top
 from wsim.rules.scenes.part import Part, fall_time, tall, tidy
 from wsim.rules.scenes.tip import on_side, slender, tipped, upended
@@ -20,6 +21,7 @@ from wsim.rules.sizes import bodies
 GAP = 0.15  # between neighbours on the ground [m]
 GAP_ABOVE = 0.08  # between neighbours on a table [m]
 ROW_SHARE = 0.5  # of their height, between things in a row: each then reaches the next as it falls
+_UNDER = ("ALIGN-CENTER-LR", "ALIGN-CENTER-FB")  # with what it is under
 DROP_HEIGHT, HIGH = 0.5, 1.5  # usually, and of what is to bounce often [m]
 
 
@@ -172,7 +174,8 @@ def _place(thing: Thing, cast: Cast, taken: set[str], part: Part, ends: _Ends) -
         item = move(thing, item, cast, part, below)
         if height is not None and "drop" in thing.does:
             part.goes[item.name] = [(0.0, 0.0, -height)]
-        part.objects.append(item.related(rows + item.relations))
+        item = item.related(rows + item.relations)
+        part.objects += on_legs(thing, item, cast, taken)
         part.objects += part.caught
         part.caught = []
         at = part.names[id(thing.inside)][0] if thing.inside is not None else lower
@@ -216,6 +219,8 @@ def _in_plane(thing: Thing, made: list[PlanObject], index: int, part: Part, ends
         return [Relation(predicate="FRONT-OF", ref=made[index - 1].name, gap=gap)]
     if thing.bridges is not None:
         return []
+    if any(beside.predicate == "under" for beside in thing.beside):
+        return []
     sides = _sides(thing) if index == 0 else []
     if not sides:
         # On the middle of what carries it, unless something is there already.
@@ -235,9 +240,10 @@ def _in_plane(thing: Thing, made: list[PlanObject], index: int, part: Part, ends
 
 def _facing(thing: Thing, part: Part) -> list[Relation]:
     return [
-        Relation(predicate=beside.predicate, ref=part.names[id(beside.ref)][0])
+        Relation(predicate=predicate, ref=part.names[id(beside.ref)][0])
         for beside in thing.beside
-        if beside.predicate not in SIDES
+        if beside.predicate not in (*SIDES, "beside")
+        for predicate in (_UNDER if beside.predicate == "under" else (beside.predicate,))
     ]
 
 

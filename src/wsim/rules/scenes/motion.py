@@ -300,7 +300,8 @@ def top(name: str, part: Part) -> float:
     items = {item.name: item for item in part.objects}
     height, at = 0.0, items.get(name)
     while at is not None:
-        height += tall(at)
+        above = at.relation("SPAWNED-ABOVE") if at.state == "static" else None
+        height += tall(at) + (above.value or 0.0 if above is not None else 0.0)
         row = at.relation("PLACE-ON")
         at = items.get(row.ref or "") if row is not None else None
     return height
