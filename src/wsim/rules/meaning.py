@@ -6,12 +6,13 @@ from dataclasses import replace
 
 from wsim.errors import UserError
 from wsim.rules.actions import MOVES, act, meet
-from wsim.rules.cast import CARRIERS, Beside, Cast, Pour, Thing
+from wsim.rules.cast import Cast, Pour, Thing
 from wsim.rules.lexicon import lexicon
 from wsim.rules.phrases import Action, Clause, Phrase, Place
 from wsim.rules.places import common, stand, support
 from wsim.rules.reader import EACH_OTHER, Reader
 from wsim.rules.tokens import NotUnderstood
+from wsim.rules.used import check_used
 
 
 def understand(clauses: list[Clause]) -> Cast:
@@ -208,7 +209,7 @@ def _settle(reader: Reader) -> None:
         reader.split(thing)
     for thing in reader.cast.things:
         _share_table(thing)
-        _check_used(thing)
+        check_used(thing, struck=any(one.target is thing for one in reader.cast.things))
         if thing.place is not None:
             continue
         moves = bool({*MOVES, "topple"} & {*thing.does}) or thing.group or thing.noun.family != "solid"
@@ -237,11 +238,6 @@ def _check_water(cast: Cast) -> None:
 _SINGLE = ("ramp", "seesaw", "belt", "turntable")  # families that are built one by one
 
 
-def _sides(thing: Thing) -> list[Beside]:
-    """The rows that say where it is; neighbours in water are its row there."""
-    return [beside for beside in thing.beside if beside.predicate != "beside"]
-
-
 def _share_table(thing: Thing) -> None:
     """What is hit by a thing that goes along a table stands on that table, too."""
     target, on = thing.target, thing.support
@@ -249,38 +245,3 @@ def _share_table(thing: Thing) -> None:
         return
     if on.noun.family == "furniture" and target.noun.family == "solid":
         target.support = on
-
-
-def _posed(thing: Thing) -> bool:
-    """Whether it has a place of its own in its part of the scene, which rows do not give."""
-    on = thing.support.noun.family if thing.support is not None else ""
-    own = thing.noun.family in ("pendulum", "seesaw", "ramp", "belt", "turntable")
-    return own or on in ("seesaw", "belt", "turntable") or thing.path is not None or thing.rod is not None
-
-
-def _check_used(thing: Thing) -> None:
-    """Refuse what no scene would use, rather than drop it."""
-    phrase, family = thing.phrase, thing.noun.family
-    for beside in thing.beside:
-        if beside.loose and (_posed(thing) or _posed(beside.ref)):
-            beside.predicate = "beside"  # the parts of a scene are side by side
-    goes = {"roll", "slide", "push", "throw", "meet", "ride", "run", "patrol", "drive", "cross"}
-    moving = thing.target is not None or goes & {*thing.does}
-    carries = family in CARRIERS or (thing.support is not None and thing.support.noun.family == "belt")
-    posed = thing.target or thing.meets or thing.path or thing.rod or thing.inside or thing.place == "water"
-    ill = family in ("pendulum", "seesaw") or (thing.support is not None and thing.support.noun.family == "seesaw")
-    for given, problem in (
-        (phrase.angle is not None and family not in ("ramp", "pendulum"), "inclines a ramp, but not this"),
-        (phrase.filled, "fills a tank, a bucket or a bowl with water, but not this"),
-        (thing.speed is not None and not moving and not carries, "needs to be told how this moves"),
-        (thing.spin is not None and family != "turntable", "turns a turntable at a rate, but not this"),
-        (bool(_sides(thing)) and bool(posed or ill), "cannot place this beside something, with what else it does"),
-        (
-            family == "pendulum" and bool(set(phrase.measures) - {"x", "z", "mass"}),
-            "cannot give a pendulum this measure",
-        ),
-        (phrase.scale is not None and phrase.length is not None, "takes a size or a length, not both"),
-        ({"mass", "density"} <= set(phrase.measures), "takes a mass or a density, not both"),
-    ):
-        if given:
-            raise NotUnderstood([thing.words], problem)

@@ -24,7 +24,7 @@ from wsim.rules.lexicon import lexicon
 from wsim.rules.meaning import understand
 from wsim.rules.scenes.bounce import contacts
 from wsim.rules.scenes.carried import build_carried
-from wsim.rules.scenes.catalogue import in_vessels, themselves
+from wsim.rules.scenes.catalogue import as_they_are, themselves
 from wsim.rules.scenes.crossing import build_crossing
 from wsim.rules.scenes.drive import build_drive
 from wsim.rules.scenes.ground import build_ground
@@ -73,7 +73,7 @@ def plan(prompt: str) -> Plan:
         {
             **whole.model_dump(),
             "contacts": [*scene.contacts, *contacts(cast, scene.names, whole)],
-            "objectives": in_vessels(scene.objectives, whole.objects),
+            "objectives": as_they_are(scene.objectives, whole.objects),
             "cameras": scene.cameras or cameras(whole, above=scene.surface, goes=scene.goes),
             "steps": steps(whole),
             "assumptions": cast.assumptions,

@@ -86,6 +86,8 @@ def size_of(thing: Thing, material: Material, water_density: float, cast: Cast) 
         fitting = _fitting(scaled, _mouth(vessel.noun), _PLAY if thing.into is None else _LANDING)
         why = why if fitting == scaled else f"so that it goes into {vessel.words}"
         size = tuple(edge / (phrase.scale or 1.0) for edge in fitting)
+    if noun.key == "domino" and phrase.length is None:
+        size, why = _for_ball(thing, size, cast, why)
     if noun.family == "vessel" and phrase.length is None:
         size, why = _roomy(thing, size, cast, why)
     if phrase.shape is not None:
@@ -107,6 +109,20 @@ def _mouth(noun: Noun) -> tuple[float, ...]:
     """The room in a vessel [m]: a catalogue's own is round, and narrower than the box round it."""
     asset = get(noun.asset) if noun.asset is not None else None
     return noun.size if asset is None or asset.hollow is None else tuple(asset.hollow.size)
+
+
+def _for_ball(thing: Thing, size: tuple[float, ...], cast: Cast, why: str) -> tuple[tuple[float, ...], str]:
+    """Dominoes as large against the ball that knocks them over as the usual ones are against the usual ball [m]."""
+    usual = lexicon().nouns["ball"].size[0]
+    radii = [
+        one.phrase.measures.get("radius", (one.phrase.length or 2 * one.noun.size[0]) / 2) * (one.phrase.scale or 1.0)
+        for one in cast.things
+        if one.target is thing and one.round
+    ]
+    share = min(2.0, radii[0] / usual) if radii else 1.0
+    if 0.7 <= share <= 1.5:
+        return size, why
+    return tuple(round(share * edge, 4) for edge in size), "as large against the ball that hits them as usual"
 
 
 def _roomy(thing: Thing, size: tuple[float, ...], cast: Cast, why: str) -> tuple[tuple[float, ...], str]:

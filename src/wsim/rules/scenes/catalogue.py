@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from wsim.assets import get
 from wsim.plan.schema import External, FromAsset, Objective, PlanObject, Registration, Relation
-from wsim.plan.schema.formula_contact import LiesOn
+from wsim.plan.schema.formula_contact import LiesOn, SupportedBy
 from wsim.plan.schema.formula_place import ContainedIn
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.lexicon import Noun, lexicon
@@ -79,21 +79,33 @@ def _is_of(word: str | None, noun: Noun) -> bool:
     return bool(kinds & {text.strip(",.") for text in texts}) or noun.material in kinds
 
 
-def in_vessels(objectives: list[Objective], objects: list[PlanObject]) -> list[Objective]:
-    """The objectives; of what is in a vessel of the catalogue, that it lies on it: only of tanks is the room known."""
-    own = {item.name for item in objects if item.primitive == "asset"}
-    return [_lying_in(one) if _vessel(one) in own else one for one in objectives]
+def as_they_are(objectives: list[Objective], objects: list[PlanObject]) -> list[Objective]:
+    """The objectives, said of the catalogue's things in ways that hold of these.
+
+    Of what is in one of its vessels, or is one in a vessel, it is asked that it lies there: only of tanks is the room
+    known. Of what stands on a seat or a board, below the highest point, that it is borne by what it stands on.
+    """
+    own = {item.name: item for item in objects if item.primitive == "asset"}
+    made = []
+    for one in objectives:
+        vessel = _vessel(one)
+        if vessel is not None and {vessel, one.object} & {*own}:
+            made.append(_asked(one, LiesOn(object=one.object, ref=vessel)))
+        elif one.kind == "stays_on" and one.ref in own and _anchor(own[one.ref]) is not None:
+            made.append(_asked(one, SupportedBy(object=one.object, ref=one.ref)))
+        else:
+            made.append(one)
+    return made
+
+
+def _asked(objective: Objective, formula: LiesOn | SupportedBy) -> Objective:
+    return Objective(kind="formula", object=objective.object, sentence=objective.sentence, formula=formula)
 
 
 def _vessel(objective: Objective) -> str | None:
     if isinstance(objective.formula, ContainedIn):
         return objective.formula.ref
     return objective.ref if objective.kind == "stays_inside" else None
-
-
-def _lying_in(objective: Objective) -> Objective:
-    lies = LiesOn(object=objective.object, ref=_vessel(objective) or "")
-    return Objective(kind="formula", object=objective.object, sentence=objective.sentence, formula=lies)
 
 
 def _on_anchors(item: PlanObject, found: dict[str, PlanObject]) -> PlanObject:

@@ -119,7 +119,7 @@ def _ask(seesaw: Thing, plank: PlanObject, loads: list[tuple[Thing, PlanObject, 
         if not falls or any(thing is load[0] for load in falls)
     )
     level = abs(moment) < 1e-9 if falls == [] else len(falls) == 2 and abs(moment) < 1e-9
-    if "level" in seesaw.does or level:
+    if "level" in (*seesaw.does, *seesaw.manners) or level:
         if not level:
             choice = "warning: it tilts to its heavier end"
             cast.assume(seesaw.words, choice, "the plan asks for what the prompt says")
