@@ -129,7 +129,7 @@ PARTS = (
 )
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(st.lists(st.sampled_from(PARTS), min_size=2, max_size=4, unique=True))
 def test_parts_of_a_scene_stand_apart(said):
     made = plan(", and ".join(said))

@@ -70,7 +70,7 @@ def _manners(thing: Thing, struck: bool) -> tuple[tuple[bool, str], ...]:
         ("upright" in said and thing.noun.primitive == "sphere", "stands what has ends upright, but not this"),
         ("to_and_fro" in said and not {"swing", "bounce"} & does, "lets what swings go to and fro, but not this"),
         ("again" in said and "bounce" not in does, "lets what bounces do it again, but not this"),
-        ("level" in said and family != "seesaw", "keeps a seesaw level, but not this"),
+        ("level" in said and "seesaw" not in (family, on), "keeps a seesaw level, but not this"),
         ("in_turn" in said and "topple" not in does, "lets things fall one after another, but not this"),
         (thing.times is not None and "bounce" not in does, "counts bounces, but not this"),
         (flat and on != "seesaw", "puts things at the ends of a seesaw, but not of this"),

@@ -119,7 +119,10 @@ def _ask(seesaw: Thing, plank: PlanObject, loads: list[tuple[Thing, PlanObject, 
         if not falls or any(thing is load[0] for load in falls)
     )
     level = abs(moment) < 1e-9 if falls == [] else len(falls) == 2 and abs(moment) < 1e-9
-    if "level" in (*seesaw.does, *seesaw.manners) or level:
+    asked_level = "level" in seesaw.does or any(
+        "level" in one.manners for one in (seesaw, *(load[0] for load in loads))
+    )
+    if asked_level or level:
         if not level:
             choice = "warning: it tilts to its heavier end"
             cast.assume(seesaw.words, choice, "the plan asks for what the prompt says")
