@@ -16,6 +16,7 @@ BALL = {
     "position": [0, 0, 2], "velocity": [1.5, 0, 0],
 }  # fmt: skip
 MOVES = {"kind": "moves", "object": "ball", "value": 0.5}
+CLAUSES = [{"words": "A thrown ball", "by": ["ball.velocity"]}, {"words": "flies half a metre", "by": [0]}]
 CAMERA = {"name": "side", "eye": [0, -4, 1.5], "target": [0, 0, 1.2]}
 
 
@@ -26,6 +27,7 @@ def answer(**change: Any) -> dict[str, Any]:
         "objects": [GROUND, BALL],
         "cameras": [CAMERA],
         "objectives": [MOVES],
+        "clauses": CLAUSES,
         "simulation": {"duration": 0.2, "frame_rate": 10},
         **change,
     }

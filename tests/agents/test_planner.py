@@ -9,12 +9,14 @@ from typing import Any, get_args
 
 import pytest
 
-from tests.agents.flies import BALL, CAMERA, GROUND, MOVES, PROMPT, answer
+from tests.agents.flies import BALL, CAMERA, CLAUSES, GROUND, MOVES, PROMPT, answer
 from tests.agents.scripted import Server, text
-from wsim.agents.ask import RETRIES, Desk, instructions
+from wsim.agents.ask import RETRIES, Desk
+from wsim.agents.chapters import planner_prompt
 from wsim.agents.failures import ModelError
 from wsim.agents.planner import HINTS, plan_with, read_plan
 from wsim.errors import UserError
+from wsim.plan.asked.covered import gaps, not_checked
 from wsim.plan.schema import Plan
 from wsim.plan.schema.constructions import Construction
 from wsim.plan.schema.examples import EXAMPLES
@@ -67,7 +69,8 @@ def test_an_asset_is_taken_by_its_id() -> None:
     (hit, *_) = search("wooden crate", 1)
     item = {"name": "box", "role": "rigid_body", "asset": hit.asset.id, "state": "dynamic", "position": [0, 0, 2]}
     plan = read_plan(
-        answer(objects=[GROUND, item], objectives=[{"kind": "moves", "object": "box", "value": 0.5}]), PROMPT
+        answer(objects=[GROUND, item], objectives=[{"kind": "moves", "object": "box", "value": 0.5}], clauses=None),
+        PROMPT,
     )
     assert plan.objects[1].construction.kind == "asset"
 
@@ -131,8 +134,73 @@ def test_what_is_wrong_goes_back_then_there_is_a_plan(server: Server, desk: Desk
     assert desk.ledger.account("planner").requests == 5
 
 
+SLID = "A ball slides gently at 1.5 m/s and hits a wall."
+
+
+@pytest.mark.parametrize(
+    ("clauses", "told"),
+    [
+        (None, "clauses: none; tie the words of the prompt to what shows them: 'slides', '1.5 m/s', 'hits'"),
+        ([{"words": "slides gently at 1.5 m/s", "by": [0]}], "'1.5 m/s': no objective that is named for it has this"),
+        ([{"words": "slides at 1.5 m/s", "by": [0, "ball"]}], "'slides at 1.5 m/s' is not in the prompt as it stands"),
+        ([{"words": "slides gently at 1.5 m/s", "by": [0, "ball"]}], "'hits': no clause has it"),
+    ],
+)
+def test_what_no_clause_ties_goes_back_once(server: Server, desk: Desk, clauses: Any, told: str) -> None:
+    server.forever["planner"] = text(json.dumps(answer(clauses=clauses)))
+    plan = plan_with(desk, SLID)
+    first, second = server.asked("planner")
+    assert told not in first
+    assert told in second
+    assert [gap.demand.text for gap in gaps(plan) if gap.demand.text == "hits"] == ["hits"]  # and is shown
+
+
+def test_a_sound_plan_is_kept_where_clauses_are_all_that_it_lacks(server: Server, desk: Desk) -> None:
+    server.script["planner"] = [text(json.dumps(answer(clauses=None)))]
+    server.forever["planner"] = text("What clauses?")
+    plan = plan_with(desk, PROMPT)
+    assert [(clause.words, clause.by) for clause in plan.clauses] == [("flies", [0]), ("half a metre", [0])]
+
+
+SHATTERS = "A thrown ball flies half a metre and shatters."
+WHY = "a ball that shatters: bodies are rigid"
+CANNOT = json.dumps({"cannot": WHY, "nearest": answer()})
+
+
+def test_what_cannot_be_simulated_has_the_nearest_world(server: Server, desk: Desk) -> None:
+    """A plan that passes it over is sent back with the way out."""
+    tied = [*CLAUSES[:1], {"words": "flies half a metre and shatters", "by": [0]}]
+    server.script["planner"] = [text(json.dumps(answer(clauses=tied))), text(CANNOT)]
+    plan = plan_with(desk, SHATTERS)
+    assert plan.stands_in_for == WHY
+    assert not_checked(plan) == ["'shatters': the world stands in for it"]
+    told = server.asked("planner")[1]
+    assert "'shatters': wsim has rigid bodies and water, and nothing in it can shatter" in told
+    assert 'where that is the point, answer {"cannot": what and why, "nearest"' in told
+
+
+def test_where_nothing_comes_near_there_is_no_plan(server: Server, desk: Desk) -> None:
+    server.script["planner"] = [text(json.dumps({"cannot": WHY, "nearest": None}))]
+    with pytest.raises(ModelError, match="the planner's model: cannot: a ball that shatters"):
+        plan_with(desk, SHATTERS)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"cannot": "", "nearest": None}, "say what cannot be simulated"),
+        ({"cannot": WHY, "nearest": "a cube"}, "nearest: it is a whole plan, or null"),
+        ({"cannot": WHY, "nearest": answer(objectives=[])}, "objectives: none"),
+    ],
+)
+def test_a_refusal_says_what_and_why(server: Server, desk: Desk, given: Any, message: str) -> None:
+    server.script["planner"] = [text(json.dumps(given)), text(CANNOT)]
+    plan_with(desk, SHATTERS)
+    assert message in server.asked("planner")[1]
+
+
 def test_the_catalogue_and_the_picture_go_with_the_prompt(server: Server, desk: Desk) -> None:
-    server.script["planner"] = [text(json.dumps(answer()))]
+    server.script["planner"] = [text(json.dumps(answer(clauses=[{"words": "falls", "by": [0]}])))]
     plan_with(desk, "A wooden crate falls.", [PICTURE], "reference.jpg")
     (request,) = server.asked("planner")
     assert "Assets of the catalogue that may fit:" in request
@@ -180,7 +248,7 @@ def constructions() -> list[Any]:
 
 
 def test_the_prompt_names_every_construction_and_role_with_their_fields() -> None:
-    told = instructions("planner")
+    told = planner_prompt()
     assert {model.model_fields["kind"].default for model in constructions()} == {*EXAMPLES}
     assert all(f'"{role}"' in told for role in ROLE_PRIMITIVES)
     assert not re.search(r"\{[A-Z]+\}", told)

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.agents.conftest import make_desk
-from tests.agents.scripted import Entry, Server, call, cut, hang, raw, reply, status, text, wire
+from tests.agents.scripted import TOKENS, Entry, Server, call, cut, hang, raw, reply, status, text, wire
 from wsim.agents.ask import RETRIES, Desk, UnusableError
 from wsim.agents.budget import BudgetError
 from wsim.agents.exchange import LONGEST
@@ -319,3 +319,12 @@ def test_a_broken_cache_is_no_cache(server: Server, desk: Desk, tmp_path: Path) 
     kept.write_text("{")
     assert desk.ask("coder", "Say a word.", word) == "no"
     assert json.loads(kept.read_text()) == {"text": "no"}
+
+
+def test_what_a_provider_had_kept_of_a_request_is_written_down(server: Server, desk: Desk) -> None:
+    usage = {**TOKENS, "prompt_tokens_details": {"cached_tokens": 900}}
+    server.script["coder"] = [lambda handler, body: handler.send(200, reply("yes", usage=usage))]
+    assert desk.ask("coder", "Say a word.", word) == "yes"
+    account = desk.ledger.facts()["by_role"]["coder"]
+    assert (account["input_tokens"], account["cache_read_tokens"]) == (1000, 900)
+    assert written(desk)[-1].usage["cache_read_tokens"] == 900

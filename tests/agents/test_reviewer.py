@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.agents.flies import CAMERA, flies, review
+from tests.agents.flies import CAMERA, PROMPT, flies, review
 from tests.agents.scripted import Server, text
 from wsim.agents.ask import Desk
 from wsim.agents.budget import Ledger
@@ -74,14 +74,29 @@ def test_a_reviewer_is_shown_all_of_it(server: Server, desk: Desk, plan: Plan, m
     assert sent.startswith("data:image/jpeg;base64,")
 
 
+def test_a_reviewer_is_asked_of_each_clause(server: Server, desk: Desk, plan: Plan, made: Path) -> None:
+    """What the pictures contradict is heard; what cannot be seen in them is no fault."""
+    seen = [
+        {"clause": 1, "shown": "cannot be seen", "why": "a speed"},
+        {"clause": 2, "shown": "no", "why": "it stays where it is"},
+    ]
+    server.script["reviewer"] = [text(review(clauses=[{"clause": 3, "shown": "yes"}])), text(review(clauses=seen))]
+    found = ask_for_review(desk, plan, made, plan_lines(plan))
+    first, second = server.asked("reviewer")
+    for part in (f"Prompt: {PROMPT}", "1. A thrown ball\n2. flies half a metre"):
+        assert part in first
+    assert "there is no clause 3; they are numbered from 1 to 2" in second
+    assert found.unshown(plan) == ["not shown: 'flies half a metre': it stays where it is"]
+
+
 @pytest.mark.parametrize(
     ("answer", "message"),
     [
         ("<html><p>A ball flies.</p></html>", "no JSON object in the answer"),
         (review()[:-1], "it breaks off"),
-        ('{"objects": "ball"}', "summary: Field required"),
-        (review(differences=[{"object": "ball", "what": "x"}] * 21), "differences: List should have at most 20 items"),
-        (review(stars=5), "stars: Extra inputs are not permitted"),
+        ('{"objects": "ball"}', "summary: it is missing"),
+        (review(differences=[{"object": "ball", "what": "x"}] * 21), "differences: it must have at most 20 items"),
+        (review(stars=5), "stars: there is no such field"),
         (
             review(differences=[{"object": "bird", "what": "it sings"}]),
             "the plan has no object 'bird'; it has ball, ground",

@@ -11,6 +11,7 @@ import pytest
 from PIL import Image
 
 from wsim.agents.sheet import COLUMNS, TILE, TILES, contact_sheet
+from wsim.judge.verdict import Finding, Verdict
 from wsim.recording.video import write_video
 from wsim.sim.seen import still_name, write_png
 
@@ -44,6 +45,23 @@ def test_the_moments_are_where_something_changes(tmp_path: Path) -> None:
         x, y = (flash % COLUMNS + 0.5) * TILE[0], (flash // COLUMNS + 0.5) * TILE[1]
         assert min(sheet.getpixel((int(x), int(y)))) > 240
     assert contact_sheet(tmp_path) == (data, labels)
+
+
+def test_what_is_told_to_happen_comes_first(tmp_path: Path) -> None:
+    """The objective's moment, then others by their weight; what changes most fills the rest."""
+    grey = [0] * 100
+    grey[37] = 255
+    folder = filmed(tmp_path, grey)
+    told = [{"time": 5.0, "what": "ball touches", "weight": 0.9}, {"time": 8.0, "what": "ball rests", "weight": 0.4}]
+    review = json.loads((folder / "review.json").read_text())
+    (folder / "review.json").write_text(json.dumps(review | {"moments": told}))
+    finding = Finding(check="ObjectiveReaches", passed=True, message="there", objective="reaches", time=2.5)
+    (folder / "verdict.json").write_text(Verdict(status="accepted", summary="", findings=[finding]).model_dump_json())
+    _, labels = contact_sheet(folder)
+    assert labels == [
+        "side 00.000s", "side 02.500s (ObjectiveReaches)", "side 03.700s", "side 05.000s (ball touches)",
+        "side 08.000s (ball rests)", "side 09.900s",
+    ]  # fmt: skip
 
 
 def test_other_cameras_show_how_it_ends(tmp_path: Path) -> None:

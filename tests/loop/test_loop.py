@@ -58,7 +58,7 @@ def repaired(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Repaired]:
         call("query_recording", {"signal": "position", "prim": "ball", "reduction": "last"}),
         text(lasts(0.4, before=0.3)),
     ]
-    server.forever["judge"] = JUDGED
+    server.script["judge"] = [JUDGED, JUDGED, JUDGED, text(opinion())]
     server.script["reviewer"] = [status(429), text(review(differences=[]))]
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", apart(folder / "cache"))
@@ -90,9 +90,9 @@ def test_it_is_planned_repaired_reviewed_and_accepted(repaired: Repaired) -> Non
     assert "cause" not in kept.facts
     usage = kept.facts["usage"]["by_role"]
     assert {role: (used["requests"], used["failed"]) for role, used in usage.items()} == {
-        "planner": (2, 1), "coder": (7, 0), "judge": (3, 0), "reviewer": (1, 1),
+        "planner": (2, 1), "coder": (7, 0), "judge": (4, 0), "reviewer": (1, 1),
     }  # fmt: skip
-    assert kept.facts["usage"]["tokens"] == 13 * 1100
+    assert kept.facts["usage"]["tokens"] == 14 * 1100
 
 
 def test_a_worse_patch_is_undone_and_told_of(repaired: Repaired) -> None:
@@ -111,7 +111,8 @@ def test_a_worse_patch_is_undone_and_told_of(repaired: Repaired) -> None:
 
 def test_the_judge_is_asked_again_about_the_best(repaired: Repaired) -> None:
     """Its repair did not help: it is told what was tried. The patch that was undone is not asked about."""
-    first, again, third = repaired.server.asked("judge")
+    first, again, third, last = repaired.server.asked("judge")
+    assert "A ball flies." in last  # of a world without a fault it is asked, too: whether the prompt came true
     assert "# Tried from here, and undone" not in first + third
     before, _, told = again.partition("# Tried from here, and undone")
     assert before.rstrip().endswith(first.rstrip())
@@ -160,7 +161,7 @@ def test_what_is_accepted_is_stamped(repaired: Repaired) -> None:
 
 def test_every_exchange_is_written_down(repaired: Repaired) -> None:
     exchanges = read(repaired.kept.folder)
-    assert len(exchanges) == len(repaired.server.requests) == 15
+    assert len(exchanges) == len(repaired.server.requests) == 16
     assert [exchange.error["kind"] for exchange in exchanges if exchange.error] == ["server", "rate limit"]
 
 

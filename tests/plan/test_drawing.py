@@ -197,22 +197,6 @@ def test_what_walks_or_drives_costs_milliseconds_a_step(name: str, steps: int) -
     assert 2.5e-3 < cost.wall / cost.steps < 5e-3
 
 
-def test_there_are_eleven_plans_written_by_hand() -> None:
-    assert [path.stem for path in EXAMPLES] == [
-        "buggy_floating_bridge",
-        "car_brakes",
-        "go2_kerbs",
-        "go2_office",
-        "go2_pushed",
-        "hmmwv_offroad",
-        "offroad_vehicle",
-        "pick_and_place",
-        "polaris_crossing",
-        "quadruped_office",
-        "wood_afloat",
-    ]
-
-
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_a_plan_written_by_hand_is_laid_out_and_drawn(path: Path, tmp_path: Path) -> None:
     plan = load(path)

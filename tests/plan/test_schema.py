@@ -51,7 +51,7 @@ MISTAKES = {
     ),
     "negative size": (
         lambda d: of(d, "steel_ball")["construction"].update(size=[-0.1]),
-        ["construction.proxy.size.0", "greater than 0"],
+        ["construction.proxy.size.0", "> 0"],
     ),
     "primitive": (
         lambda d: of(d, "steel_ball")["construction"].update(primitive="bal"),
@@ -63,11 +63,11 @@ MISTAKES = {
     ),
     "no stand-in": (
         lambda d: of(d, "steel_ball").update(construction={"kind": "external", "candidate": "a ball"}),
-        ["construction.external.stand_in: Field required; add it"],
+        ["construction.external.stand_in: it is missing; add it"],
     ),
     "the old form": (
         lambda d: of(d, "steel_ball").update(size=[0.1]),
-        ["objects.{steel_ball}.size: Extra inputs are not permitted; remove it"],
+        ["objects.{steel_ball}.size: there is no such field; remove it"],
     ),
     "name taken": (
         lambda d: of(d, "steel_ball").update(name="tank"),
@@ -75,7 +75,7 @@ MISTAKES = {
     ),
     "name no identifier": (
         lambda d: of(d, "steel_ball").update(name="steel ball"),
-        ["objects.{steel_ball}.name", "pattern"],
+        ["objects.{steel_ball}.name", "it must be a name of letters, digits and _"],
     ),
     "half a character": (lambda d: d.update(title="ball \ud800"), ["title: ", "lone surrogate"]),
     "half a character in a name": (
@@ -85,7 +85,7 @@ MISTAKES = {
     "half a character as a field": (lambda d: d.update({"\ud800": 1}), ["lone surrogate"]),
     "beyond a million": (
         lambda d: of(d, "steel_ball")["pose"].update(position=[0.0, 1.1e6, 0.0]),
-        ["objects.{steel_ball}.pose.position.1", "less than or equal to 1000000"],
+        ["objects.{steel_ball}.pose.position.1", "<= 1000000"],
     ),
     "not finite in JSON's eyes": (
         lambda d: of(d, "steel_ball").update(velocity=[0.0, 0.0, float("inf")]),
@@ -133,7 +133,7 @@ MISTAKES = {
     ),
     "argument unknown": (
         lambda d: rows(d, "water")[1].update(hight=0.1),
-        ["objects.{water}.topology.relation.1.hight: Extra inputs"],
+        ["objects.{water}.topology.relation.1.hight: there is no such"],
     ),
     "region upside down": (
         lambda d: rows(d, "steel_ball").append(
@@ -242,13 +242,13 @@ MISTAKES = {
     ),
     "limits that are no list": (
         lambda d: d.update(joints=[joint(limits="wide")]),
-        ['joints.0.limits: Input should be a list; it is "wide"'],
+        ['joints.0.limits: it must be a list, [...]; it is "wide"'],
     ),
     "a drive of no strength": (
         lambda d: d.update(joints=[joint(drive={"damping": 1, "max_force": -1})]),
-        ["joints.0.drive.max_force: Input should be greater than 0; it is -1"],
+        ["joints.0.drive.max_force: it must be > 0; it is -1"],
     ),
-    "duration": (lambda d: d["simulation"].update(duration=0), ["simulation.duration", "greater than 0; it is 0"]),
+    "duration": (lambda d: d["simulation"].update(duration=0), ["simulation.duration", "> 0; it is 0"]),
     "an endless duration": (
         lambda d: d["simulation"].update(duration=1e5),
         ["simulation.duration: 100000 must be <= 3600 s"],
@@ -314,7 +314,7 @@ MISTAKES = {
     ),
     "camera's view": (
         lambda d: d.update(cameras=[{"name": "side", "view": "from_above"}]),
-        ["cameras.0.view: Input should be 'side_minus_x'"],
+        ["cameras.0.view: it must be 'side_minus_x'"],
     ),
     "camera that follows what stands": (
         lambda d: d.update(cameras=[{"name": "side", "view": "top_down", "follows": "tank"}]),
@@ -344,13 +344,13 @@ MISTAKES = {
         lambda d: d.update(outputs={"stills": ["back"]}),
         ["outputs.stills.0: no camera 'back'; the plan has "],
     ),
-    "seed": (lambda d: d["simulation"].update(seed=2**31), ["simulation.seed", "less than 2147483648"]),
+    "seed": (lambda d: d["simulation"].update(seed=2**31), ["simulation.seed", "< 2147483648"]),
     # the plan itself
     "version 1": (lambda d: d.update(version=1), ["version 1: this version of wsim reads version 2 plans"]),
-    "no version": (lambda d: d.update(version="two"), ["version: Input should be 2"]),
+    "no version": (lambda d: d.update(version="two"), ["version: it must be 2"]),
     "hash of a picture": (
         lambda d: d.update(image={"path": "a.png", "sha256": "abc"}),
-        ["image.sha256: String should match pattern"],
+        ["image.sha256: it must match"],
     ),
 }
 

@@ -62,7 +62,7 @@ def test_files_that_are_no_plans_are_refused(tmp_path):
         ('{"title": 1, "title": 2}', "'title' is given twice"),
         ("1" * 5000, "a number of 5000 digits"),
         ('{"title": NaN}', "NaN is no number"),
-        ("[]", "Input should be a valid dictionary"),
+        ("[]", "it must be an object, {...}"),
     ],
 )
 def test_json_that_is_no_plan_is_refused(tmp_path, text, words):

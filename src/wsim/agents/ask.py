@@ -7,17 +7,14 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from wsim.agents.budget import BudgetError, Ledger
+from wsim.agents.chapters import PROMPTS
 from wsim.agents.failures import ModelError
 from wsim.agents.models import Models, connect
 from wsim.agents.transcript import Transcript
 from wsim.errors import UserError
-from wsim.judge.language.sentence import vocabulary
-from wsim.plan.schema.examples import constructions, roles
-from wsim.scene.vehicle_spec import preset, presets
 
 if TYPE_CHECKING:
     from wsim.agents.relay import Replay
@@ -36,12 +33,17 @@ class UnusableError(UserError):
 
 @dataclass
 class Desk:
-    """What the roles of a run share."""
+    """What the roles of a run share; a `fresh` one takes no replies that are kept from before."""
 
     models: Models
     transcript: Transcript
     ledger: Ledger
     replay: Replay | None = None
+    fresh: bool = False
+
+    def answers(self, role: str) -> bool:
+        """Whether a role's model would answer now: a recorded run has no word for what it was not asked."""
+        return self.replay is None or (bool(self.replay.left) and self.replay.left[0].role == role)
 
     def ask(
         self,
@@ -52,6 +54,7 @@ class Desk:
         pictures: Sequence[bytes] = (),
         tools: Sequence[Tool] = (),
         workspace: Workspace | None = None,
+        told: str | None = None,
     ) -> T:
         """What `accept` makes of the model's answer.
 
@@ -62,6 +65,7 @@ class Desk:
             pictures: JPEGs that it sees.
             tools: What it may call, in `workspace`.
             workspace: The run that the tools work on.
+            told: Its instructions; its prompt in prompts/ by default.
 
         Raises:
             ModelError: If it gave nothing that can be used.
@@ -69,11 +73,13 @@ class Desk:
         """
         # a second to load: builtin roles need none
         from pydantic_ai import Agent, BinaryContent, ModelRetry, TextOutput
+        from pydantic_ai.capabilities import ProcessHistory  # a second to load: builtin roles need none
 
         # a second to load: builtin roles need none
         from pydantic_ai.exceptions import ContentFilterError, UnexpectedModelBehavior, UsageLimitExceeded
         from pydantic_ai.usage import UsageLimits  # a second to load: builtin roles need none
 
+        from wsim.agents.history import shortened
         from wsim.agents.relay import Relay
 
         self.ledger.check()
@@ -89,15 +95,18 @@ class Desk:
         called: list[str] = []
         name = self.models[role]
         model = Relay(
-            connect(name, role) if self.replay is None else None, name, role, self.transcript, self.ledger, self.replay
-        )
+            connect(name, role) if self.replay is None else None, name, role, self.transcript, self.ledger, self.replay,
+            fresh=self.fresh,
+        )  # fmt: skip
         agent: Agent[None, T] = Agent(
             model,
             output_type=TextOutput(read),
-            instructions=instructions(role),
+            instructions=told or instructions(role),
             tools=[_offered(tool, workspace, called) for tool in tools if workspace is not None],
             retries={"output": RETRIES, "tools": RETRIES},
-            model_settings={"max_retries": 0, "parallel_tool_calls": True},
+            capabilities=[ProcessHistory(shortened)],
+            # a provider that keeps the beginning of a conversation takes a tenth for it, or less
+            model_settings={"max_retries": 0, "parallel_tool_calls": True, "cache": True},
         )
         content: Any = [request, *(BinaryContent(picture, media_type="image/jpeg") for picture in pictures)]
         limits = UsageLimits(request_limit=RETRIES + ROUNDS + 1)
@@ -145,23 +154,8 @@ def _schema(schema: dict[str, Any]) -> dict[str, Any]:
 
 @cache
 def instructions(role: str) -> str:
-    """The prompt of a role; what objectives and objects may be is from the language's and the schema's own tables."""
-    text = (Path(__file__).parent / "prompts" / f"{role}.md").read_text(encoding="utf-8")
-    for place, table in (
-        ("PREDICATES", vocabulary), ("CONSTRUCTIONS", constructions), ("ROLES", roles), ("VEHICLES", _vehicles),
-    ):  # fmt: skip
-        text = text.replace(f"{{{place}}}", table())
-    return text
-
-
-def _vehicles() -> str:
-    """Length, width and height of each kind of vehicle, the way between its axles [m], its mass."""
-    told = []
-    for kind in presets():
-        spec = preset(kind)
-        size = " x ".join(f"{edge:g}" for edge in (spec.length, spec.width, spec.height))
-        told.append(f"{kind} {size}, {spec.wheelbase:g}, {spec.mass:g} kg")
-    return "; ".join(told)
+    """The prompt of a role."""
+    return (PROMPTS / f"{role}.md").read_text(encoding="utf-8")
 
 
 def object_in(text: str) -> dict[str, Any]:

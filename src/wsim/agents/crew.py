@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Any
 
-from wsim.agents import coder, judge, planner, reviewer
+from wsim.agents import coder, judge, planner, replan, reviewer
 from wsim.agents.ask import Desk
 from wsim.agents.budget import BudgetError
 from wsim.agents.failures import ModelError
@@ -22,6 +22,7 @@ from wsim.tools.plan import plan_lines
 from wsim.tools.verdict import verdict_lines
 
 if TYPE_CHECKING:
+    from wsim.agents.replan import Replanned
     from wsim.plan.schema import Plan
 
 SHOWN_DIFF = 14  # lines of a patch that did not help
@@ -70,7 +71,9 @@ class Crew:
         if self.has("reviewer"):
             try:
                 seen = reviewer.review(self.desk, plan, tried.folder, plan_lines(plan))
-                tried.review, tried.seen = seen.text, [one.what for one in seen.differences]
+                unshown = seen.unshown(plan)
+                tried.review = "\n".join([seen.text, *unshown])
+                tried.seen = [*(one.what for one in seen.differences), *unshown]
             except ModelError as error:
                 self.notes.append(f"iteration {tried.number} was reviewed by facts alone: {error}")
         nobody = ["Nobody looked at the pictures; the renderer's facts:", *reviewer.facts(tried.folder)]
@@ -80,16 +83,18 @@ class Crew:
     def judge(self, tried: Attempt, plan: Plan, undone: Sequence[Attempt] = ()) -> None:
         """Let the judge's model name what to mend, or object. Checks that failed stay failed.
 
-        Where every check passed and a reviewer saw no difference there is nothing to ask, nor where no check failed and
-        one crashed.
+        It is asked of a world without a fault, too: no check knows whether that is what the prompt asks for. Where no
+        check failed and one crashed there is nothing to ask.
 
         Args:
             tried: What is judged.
             plan: What it must be.
             undone: Patches of it that made it no better: what was asked for before them did not help.
         """
+        if not self.has("judge") or tried.reached < Reached.PHYSICS or tried.verdict.status == "blocked":
+            return
         settled = tried.verdict.status == "accepted" and tried.seen is not None and not tried.seen
-        if not self.has("judge") or tried.reached < Reached.PHYSICS or settled or tried.verdict.status == "blocked":
+        if settled and not self.desk.answers("judge"):  # a run of before these were asked about
             return
         passed = tried.verdict.status == "accepted"
         found, history = verdict_lines(tried.folder / "verdict.json"), self._history(undone)
@@ -99,6 +104,7 @@ class Crew:
             self.notes.append(f"iteration {tried.number} was judged by the checks alone: {error}")
             return
         tried.repair = held.repair.sentence if held.repair else ""
+        tried.plan_fault = held.plan if held.plan and not held.accept else ""
         tried.verdict = judge.decide(tried.verdict, held)
         if passed and tried.verdict.status != "accepted":
             tried.reached = Reached.REVIEW
@@ -145,6 +151,25 @@ class Crew:
             self.tried[found.program] = number
             made[found.program] = found.why
         return list(made)
+
+    def replan(self, best: Attempt, undone: Sequence[Attempt], plan: Plan, by: str, fault: str) -> Replanned:
+        """The plan that the planner's model makes of evidence against the one that is there.
+
+        Args:
+            best: The best world of the plan.
+            undone: What was tried from there in vain.
+            plan: What they were held against.
+            by: Who finds the plan at fault.
+            fault: Why.
+
+        Raises:
+            ModelError: If it gave no plan that asks for as much.
+            BudgetError: If tokens or time ran out.
+        """
+        lines = verdict_lines(best.folder / "verdict.json")
+        evidence = [f"The {by}: {fault}", "# Verdict on the best program", "\n".join(lines)]
+        evidence += ["# Tried, and undone", *self._history(undone)] if undone else []
+        return replan.replan(self.desk, plan, evidence)
 
     def mends(self, best: Attempt, undone: Sequence[Attempt], plan: Plan, count: int = 1) -> list[str]:
         """The best program so far with one of the judge's suggestions applied: up to so many not tried yet.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 Failure = Literal[
-    "timeout", "rate limit", "server", "connection", "refused", "unusable", "gave up", "end of transcript"
+    "timeout", "rate limit", "server", "connection", "refused", "unusable", "gave up", "cannot", "end of transcript"
 ]
 AGAIN: frozenset[str] = frozenset({"timeout", "rate limit", "server", "connection"})
 

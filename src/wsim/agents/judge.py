@@ -6,18 +6,20 @@ It may object to a world that passes every check. It cannot accept one that fail
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, get_args
+from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from wsim.agents.ask import UnusableError, object_in
 from wsim.judge.verdict import Finding, RepairKind, RepairTarget, Verdict
+from wsim.plan.schema.explain import explain
 
 if TYPE_CHECKING:
     from wsim.agents.ask import Desk
     from wsim.plan.schema import Plan
 
 ROOT = "/World/"
+MINOR = 0.25  # of a major objection's weight
 Short = Annotated[str, AfterValidator(lambda text: text[:800])]  # who says more is heard that far
 
 
@@ -28,6 +30,7 @@ class Objection(BaseModel):
 
     object: str
     what: Short
+    severity: Literal["minor", "major"] = "major"
 
 
 class Repair(BaseModel):
@@ -55,6 +58,7 @@ class Opinion(BaseModel):
     accept: bool
     why: Short = ""
     repair: Repair | None = None
+    plan: Short | None = None  # what of the plan no program can make true
     objections: list[Objection] = Field(default_factory=list, max_length=10)
 
 
@@ -99,16 +103,21 @@ def _read(text: str, names: set[str], passed: bool) -> Opinion:
     except ValidationError as error:
         problem = error.errors(include_url=False)[0]
         hint = f"; kinds are {', '.join(get_args(RepairKind))}" if "kind" in problem["loc"] else ""
-        raise UnusableError(f"{'.'.join(map(str, problem['loc']))}: {problem['msg']}{hint}") from error
+        raise UnusableError(f"{explain(error)}{hint}") from error
     for objection in found.objections:
         if objection.object not in names:
             raise UnusableError(
                 f"objections: the plan has no object {objection.object!r}; it has {', '.join(sorted(names))}"
             )
     if not found.accept and not found.objections and passed:
-        raise UnusableError("every check passed: accept, or object to an object of the plan; a repair is not enough")
-    if not found.accept and not found.objections and found.repair is None:
-        raise UnusableError("not accepted, and neither a repair nor an objection; say what is wrong")
+        raise UnusableError(
+            "every check passed: accept, or object to an object of the plan; neither a repair nor a fault of the plan "
+            "is enough"
+        )
+    if not found.accept and not found.objections and found.repair is None and not found.plan:
+        raise UnusableError(
+            "not accepted, and neither a repair, a fault of the plan nor an objection; say what is wrong"
+        )
     return found
 
 
@@ -126,13 +135,12 @@ def decide(verdict: Verdict, held: Opinion) -> Verdict:
             message=f"{one.object}: {one.what}",
             prim=ROOT + one.object,
             limit_from="the judge's model, from the review",
+            weight=1.0 if one.severity == "major" else MINOR,
             target=RepairTarget(kind="visual mismatch", prim=ROOT + one.object, why=one.what),
         )
         for one in held.objections
     ]
     findings = [*verdict.findings, *objections]
     failed = sum(not finding.passed for finding in findings)
-    return Verdict(
-        status="rejected", summary=f"{failed} of {len(findings)} findings fail, {len(objections)} by review.",
-        findings=findings,
-    )  # fmt: skip
+    summary = f"{failed} of {len(findings)} findings fail, {len(objections)} by review."
+    return verdict.model_copy(update={"status": "rejected", "summary": summary, "findings": findings})

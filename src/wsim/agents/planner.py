@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from wsim.agents.ask import object_in
+from wsim.agents.ask import UnusableError, object_in
+from wsim.agents.chapters import asked_for, chapters_for, planner_prompt, told
+from wsim.agents.failures import ModelError
 from wsim.agents.robots import robots_for
+from wsim.agents.shorthand import written_out
 from wsim.assets import search
 from wsim.errors import UserError
-from wsim.judge.language import parse
+from wsim.plan.asked.covered import missing, spans
+from wsim.plan.asked.demands import REQUIRED, demands
+from wsim.plan.asked.tied import tied
+from wsim.plan.feasible.plan import refuse_impossible
 from wsim.plan.store import made
 from wsim.program.compose import compose
 from wsim.program.validator import validate
@@ -21,6 +28,8 @@ if TYPE_CHECKING:
     from wsim.plan.schema import Plan
 
 ASSETS = 6  # of the catalogue that are offered
+REASON = 400  # characters of why something cannot be simulated
+NO_OBJECTIVE = "plan: objectives: none; say what must happen, so that the judge can hold the world to it"
 HINTS = (
     '{"image": {"hints": {"visible_objects": [str], "scale": str, "support": [str], "layout": [str], '
     '"scene_type": str, "action_intent": str, "constraints": [str]}}}'
@@ -36,8 +45,10 @@ def plan_with(desk: Desk, prompt: str, pictures: Sequence[bytes] = (), image: st
         pictures: JPEGs of what it must look like.
         image: Name of the picture's file, for the plan.
 
+    A prompt whose point cannot be simulated has the plan that comes nearest, which says what it stands in for.
+
     Raises:
-        ModelError: If no answer became a plan.
+        ModelError: If no answer became a plan, or nothing comes near.
         BudgetError: If tokens or time ran out.
     """
     request = [f"Prompt: {prompt}"]
@@ -46,9 +57,80 @@ def plan_with(desk: Desk, prompt: str, pictures: Sequence[bytes] = (), image: st
         known = {"path": image, "sha256": sha256(pictures[0]).hexdigest()}
         request.append(f"A reference picture is attached ({image}); fill image.hints from it: {HINTS}")
     request += [_catalogue(prompt), robots_for(prompt)]
-    return desk.ask(
-        "planner", "\n\n".join(request), lambda text: read_plan(object_in(text), prompt, known), pictures=pictures
-    )
+    kept: list[Plan] = []  # sound but for its clauses, for which a model is asked once
+
+    def read(text: str) -> Plan | Cannot:
+        answer = object_in(text)
+        if wanted := asked_for(answer):
+            raise UnusableError(told(wanted))
+        plan = _read(answer, prompt, known)
+        if isinstance(plan, Cannot):
+            return plan
+        lacks = clauses_lacking(plan)
+        if lacks and not kept and desk.answers("planner"):
+            kept.append(plan)
+            raise UnusableError(lacks)
+        return _with_clauses(plan) if kept else plan
+
+    try:
+        found = desk.ask(
+            "planner", "\n\n".join(request), read, pictures=pictures, told=planner_prompt(chapters_for(prompt))
+        )
+    except ModelError:
+        if not kept:
+            raise
+        return _with_clauses(kept[0])
+    if isinstance(found, Cannot):
+        raise ModelError("cannot", found.why, "planner")
+    return found
+
+
+@dataclass(frozen=True)
+class Cannot:
+    """The planner's word that wsim has nothing like what is asked."""
+
+    why: str
+
+
+def _read(answer: dict[str, Any], prompt: str, picture: dict[str, str]) -> Plan | Cannot:
+    """A plan; or the one that comes nearest; or why there is none."""
+    if "cannot" not in answer:
+        return read_plan(answer, prompt, picture)
+    why = " ".join(str(answer["cannot"] or "").split())[:REASON]
+    if not why:
+        raise UnusableError('cannot: say what cannot be simulated, and why, or leave "cannot" out')
+    if answer.get("nearest") is None:
+        return Cannot(why)
+    if not isinstance(answer["nearest"], dict):
+        raise UnusableError("nearest: it is a whole plan, or null where nothing comes near")
+    return read_plan(answer["nearest"] | {"stands_in_for": why}, prompt, picture)
+
+
+def _with_clauses(plan: Plan) -> Plan:
+    """A plan whose model was asked for clauses: without any it gets those that its words alone give."""
+    return plan if plan.clauses else tied(plan)
+
+
+def clauses_lacking(plan: Plan) -> str:
+    """What a plan passes over of its prompt, for the model to mend; empty where it is nothing.
+
+    A plan with no clauses at all is told of those that its prompt has.
+    """
+    if not plan.clauses and not (asked := [each for each in demands(plan.prompt) if each.kind in REQUIRED]):
+        return ""
+    if not plan.clauses:
+        listed = ", ".join(each.quoted for each in asked)
+        return f"plan: clauses: none; tie the words of the prompt to what shows them: {listed}"
+    wrong = [f"clauses: {clause.words!r} is not in the prompt as it stands" for clause, at in spans(plan) if not at]
+    silent = missing(plan)
+    if any(gap.demand.kind == "beyond" for gap in silent):
+        wrong.append('where that is the point, answer {"cannot": what and why, "nearest": the nearest plan or null}')
+    if silent:
+        wrong.append(
+            "clauses: " + "; ".join(gap.line for gap in silent) + "; tie each to an objective or a property that shows "
+            'it, or say in "unchecked" why nothing does'
+        )
+    return f"plan: {'; '.join(wrong)}" if wrong else ""
 
 
 def read_plan(answer: dict[str, Any], prompt: str, picture: dict[str, str] | None = None) -> Plan:
@@ -65,43 +147,17 @@ def read_plan(answer: dict[str, Any], prompt: str, picture: dict[str, str] | Non
     data = {"title": prompt[:80], **answer, "prompt": prompt}
     if picture and isinstance(data.get("image") or {}, dict):
         data["image"] = {**(data.get("image") or {}), **picture}
-    if isinstance(data.get("objects"), list):
-        data["objects"] = [_written_out(item) if isinstance(item, dict) else item for item in data["objects"]]
-    objectives = data.get("objectives")
-    for number, objective in enumerate(objectives if isinstance(objectives, list) else []):
-        if isinstance(objective, dict) and objective.get("kind") == "formula" and "formula" not in objective:
-            objective["formula"] = _formula(str(objective.get("sentence", "")), f"objectives.{number}.sentence")
+    data = written_out(data)
+    if data.get("objectives") == []:
+        raise UserError(NO_OBJECTIVE)
     plan = made(data, Path("plan"))
     if not plan.objectives:
-        raise UserError("plan: objectives: none; say what must happen, so that the judge can hold the world to it")
+        raise UserError(NO_OBJECTIVE)
+    refuse_impossible(plan)
     problems = validate(compose(plan), plan)  # what no program can be written for is the planner's to mend
     if problems:
         raise UserError(f"plan: no program can build it: {problems[0].message}")
     return plan
-
-
-def _written_out(item: dict[str, Any]) -> dict[str, Any]:
-    """An object whose `primitive` and `size`, or `asset`, and `relations` may stand at its top."""
-    full = dict(item)
-    if "construction" not in full:
-        if "asset" in full:
-            full["construction"] = {"kind": "asset", "asset": full.pop("asset")}
-        elif "primitive" in full:
-            full["construction"] = {"primitive": full.pop("primitive"), "size": full.pop("size", [])}
-    if isinstance(full.get("construction"), dict):
-        full["construction"] = {"kind": "proxy", **full["construction"]}
-    if "relations" in full and "topology" not in full:
-        full["topology"] = {"relation": full.pop("relations")}
-    if isinstance(full.get("position"), list) and "pose" not in full:
-        full["pose"] = {"position": full.pop("position"), "rotation_deg": full.pop("rotation_deg", [0, 0, 0])}
-    return full
-
-
-def _formula(sentence: str, where: str) -> dict[str, Any]:
-    try:
-        return parse(sentence).model_dump(mode="json", exclude_none=True)
-    except ValueError as error:
-        raise UserError(f"{where}: {error}") from error
 
 
 def _catalogue(prompt: str) -> str:

@@ -73,6 +73,7 @@ class Relay(WrapperModel):
         ledger: Is charged.
         replay: Answers in place of the model.
         sleep: Waits between attempts [s].
+        fresh: Ask whatever was asked before, too; replies are kept all the same.
     """
 
     def __init__(
@@ -84,10 +85,12 @@ class Relay(WrapperModel):
         ledger: Ledger,
         replay: Replay | None = None,
         sleep: Callable[[float], Any] = asyncio.sleep,
+        *,
+        fresh: bool = False,
     ) -> None:
         super().__init__(wrapped if wrapped is not None else _absent())
         self.name, self.role, self.transcript, self.ledger, self.replay = name, role, transcript, ledger, replay
-        self.sleep = sleep
+        self.sleep, self.fresh = sleep, fresh
         self._kept: list[str] = []
 
     async def request(
@@ -108,7 +111,7 @@ class Relay(WrapperModel):
             return self._replayed(request)
         key = request.digest(self.name)
         self._kept.append(key)
-        known = cache.get(key)
+        known = None if self.fresh else cache.get(key)
         if known is not None:
             self.ledger.account(self.role).cached += 1
             self.transcript.add(self.role, self.name, request, reply=known, cached=True)
@@ -152,9 +155,10 @@ class Relay(WrapperModel):
         usage = {"input_tokens": response.usage.input_tokens, "output_tokens": response.usage.output_tokens}
         if not any(usage.values()):  # a server that does not count
             usage = {"input_tokens": _tokens(request.messages, request.tools), "output_tokens": _tokens(reply)}
+        if response.usage.cache_read_tokens:
+            usage["cache_read_tokens"] = response.usage.cache_read_tokens
         account.requests += 1
-        account.input_tokens += usage["input_tokens"]
-        account.output_tokens += usage["output_tokens"]
+        account.charge(usage)
         account.seconds += seconds
         price = _price(response)
         if price is not None:
@@ -175,8 +179,7 @@ class Relay(WrapperModel):
             if exchange.reply is not None:
                 account.cached += exchange.cached
                 account.requests += not exchange.cached
-                account.input_tokens += exchange.usage.get("input_tokens", 0)
-                account.output_tokens += exchange.usage.get("output_tokens", 0)
+                account.charge(exchange.usage)
                 return response_of(exchange.reply, exchange.model, exchange.usage)
             account.failed += 1
             error = exchange.error or {}

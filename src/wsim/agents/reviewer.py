@@ -11,6 +11,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationErr
 
 from wsim.agents.ask import UnusableError, object_in
 from wsim.agents.sheet import contact_sheet, shares
+from wsim.plan.schema.explain import explain
 from wsim.runs.folder import write_json
 
 if TYPE_CHECKING:
@@ -31,6 +32,16 @@ class Difference(BaseModel):
     severity: Literal["minor", "major"] = "minor"
 
 
+class Shown(BaseModel):
+    """Whether pictures and motion show a clause of the prompt."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    clause: int = Field(ge=1)  # as the request numbers them
+    shown: Literal["yes", "no", "cannot be seen"]
+    why: Short = ""
+
+
 class Review(BaseModel):
     """What was seen."""
 
@@ -42,6 +53,15 @@ class Review(BaseModel):
     motion: Short = ""
     contacts: Short = ""
     differences: list[Difference] = Field(default_factory=list, max_length=20)
+    clauses: list[Shown] = Field(default_factory=list, max_length=100)
+
+    def unshown(self, plan: Plan) -> list[str]:
+        """The clauses of the prompt that the pictures contradict, a line each."""
+        return [
+            f"not shown: '{plan.clauses[each.clause - 1].words}'{f': {each.why}' if each.why else ''}"
+            for each in self.clauses
+            if each.shown == "no"
+        ]
 
     @property
     def text(self) -> str:
@@ -84,28 +104,34 @@ def review(desk: Desk, plan: Plan, folder: Path, plan_lines: Sequence[str]) -> R
     """
     sheet, labels = contact_sheet(folder, [camera.name for camera in plan.cameras])
     names = {item.name for item in plan.objects}
+    clauses = [f"{number}. {clause.words}" for number, clause in enumerate(plan.clauses, start=1)]
     request = "\n\n".join(
         [
+            f"Prompt: {plan.prompt}", *(["# Its clauses", "\n".join(clauses)] if clauses else []),
             "# Plan", "\n".join(line for line in plan_lines if not line.startswith("formula")),
             "# Pictures", f"One sheet, left to right, top to bottom: {', '.join(labels)}" if labels else "none",
             "# Facts from the shape-index images (glass and water have no pixels)",
             "\n".join(facts(folder)) or "none",
         ]
     )  # fmt: skip
-    return desk.ask("reviewer", request, lambda text: _read(text, names), pictures=[sheet] if sheet else [])
+    return desk.ask(
+        "reviewer", request, lambda text: _read(text, names, len(clauses)), pictures=[sheet] if sheet else []
+    )
 
 
-def _read(text: str, names: set[str]) -> Review:
+def _read(text: str, names: set[str], clauses: int) -> Review:
     try:
         found = Review.model_validate(object_in(text))
     except ValidationError as error:
-        problem = error.errors(include_url=False)[0]
-        raise UnusableError(f"{'.'.join(map(str, problem['loc']))}: {problem['msg']}") from error
+        raise UnusableError(explain(error)) from error
     for difference in found.differences:
         if difference.object not in names:
             raise UnusableError(
                 f"differences: the plan has no object {difference.object!r}; it has {', '.join(sorted(names))}"
             )
+    for each in found.clauses:
+        if each.clause > clauses:
+            raise UnusableError(f"clauses: there is no clause {each.clause}; they are numbered from 1 to {clauses}")
     return found
 
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from pxr import Usd, UsdGeom, UsdPhysics
+from collections.abc import Iterator
+
+from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
 from wsim.assets.robots import robots
 from wsim.assets.sources import sources
 from wsim.scene import Scene
+from wsim.scene.robot_drives import is_angular
+from wsim.scene.robot_pose import followed, one_freedom
 
 
 def robots_for(prompt: str) -> str:
@@ -22,17 +26,49 @@ def robots_for(prompt: str) -> str:
 
 
 def _parts(robot: str) -> str:
-    """How large a robot is as it stands, facing +X; its links, and its joints with their limits [deg] or [m]."""
+    """How large a robot is as it stands, facing +X; its links, grips, and joints with their limits [deg] or [m]."""
     scene = Scene()
     handle = scene.robot("robot", robot)
     root = scene.stage.GetPrimAtPath(handle.path)
-    bounds = UsdGeom.BBoxCache(Usd.TimeCode.Default(), ["default"]).ComputeWorldBound(root).ComputeAlignedRange()
-    low, high = bounds.GetMin(), bounds.GetMax()
-    spans = ", ".join(f"{axis} {a:.2f} to {b:.2f}" for axis, a, b in zip("xyz", low, high, strict=True))
-    joints = []
+    spans = _spans(_boxes().ComputeWorldBound(root))
+    joints = ", ".join(_joint(prim) for prim in Usd.PrimRange(root) if one_freedom(prim))
+    grips = "".join(f"; {grip}" for grip in _grips(root))
+    return f" (stands at 0, 0, 0, reaches {spans} m; links {', '.join(handle.links)}; joints {joints}{grips})"
+
+
+def _boxes() -> UsdGeom.BBoxCache:
+    return UsdGeom.BBoxCache(Usd.TimeCode.Default(), ["default"])
+
+
+def _spans(bounds: Gf.BBox3d) -> str:
+    box = bounds.ComputeAlignedRange()
+    return ", ".join(f"{axis} {a:.2f} to {b:.2f}" for axis, a, b in zip("xyz", box.GetMin(), box.GetMax(), strict=True))
+
+
+def _joint(prim: Usd.Prim) -> str:
+    """A joint and its limits, or whom it follows: that one alone is scheduled."""
+    leader = followed(prim)
+    if leader is not None:
+        return f"{prim.GetName()} (follows {leader[0]}, and takes no schedule)"
+    turns = is_angular(prim)
+    joint = UsdPhysics.RevoluteJoint(prim) if turns else UsdPhysics.PrismaticJoint(prim)
+    low, high = joint.GetLowerLimitAttr().Get(), joint.GetUpperLimitAttr().Get()
+    return f"{prim.GetName()} ({low:.3g} to {high:.3g} {'deg' if turns else 'm'})"
+
+
+def _grips(root: Usd.Prim) -> Iterator[str]:
+    """Where a link's fingers are at the start, in its own frame: what a reach of it has to leave room for."""
+    stage, fingers = root.GetStage(), dict[str, list[Usd.Prim]]()
     for prim in Usd.PrimRange(root):
-        for kind, unit in ((UsdPhysics.RevoluteJoint, "deg"), (UsdPhysics.PrismaticJoint, "m")):
-            if prim.IsA(kind):
-                least, most = kind(prim).GetLowerLimitAttr().Get(), kind(prim).GetUpperLimitAttr().Get()
-                joints.append(f"{prim.GetName()} ({least:.3g} to {most:.3g} {unit})")
-    return f" (stands at 0, 0, 0, reaches {spans} m; links {', '.join(handle.links)}; joints {', '.join(joints)})"
+        if prim.IsA(UsdPhysics.PrismaticJoint):
+            hand, finger = (UsdPhysics.Joint(prim).GetBody0Rel(), UsdPhysics.Joint(prim).GetBody1Rel())
+            if hand.GetTargets() and finger.GetTargets():
+                held = stage.GetPrimAtPath(finger.GetTargets()[0])
+                fingers.setdefault(str(hand.GetTargets()[0]), []).append(held)
+    for hand, held in fingers.items():
+        if len(held) > 1:
+            at = "; ".join(
+                f"{prim.GetName()} {_spans(_boxes().ComputeRelativeBound(prim, stage.GetPrimAtPath(hand)))}"
+                for prim in held
+            )
+            yield f"fingers in the frame of {hand.rpartition('/')[2]} at the start: {at} m"

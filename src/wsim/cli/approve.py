@@ -10,12 +10,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from wsim.agents.shorthand import load_given
 from wsim.cli.show import console, show_plan
 from wsim.errors import UserError
 from wsim.plan.drawing.picture import draw_picture
 from wsim.plan.layout import layout
 from wsim.plan.schema import Plan
-from wsim.plan.store import load
 from wsim.rules.questions import Planner, Question, answered, questions, read_answers
 
 NO_ANSWER = (
@@ -129,7 +129,7 @@ def _edit(proposal: Proposal) -> None:
         if not _opened(path):
             return
         try:
-            proposal.plan = load(path)
+            proposal.plan = load_given(path)
             break
         except UserError as error:
             console.print(str(error), style="red", markup=False)

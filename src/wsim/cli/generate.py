@@ -13,10 +13,12 @@ import typer
 from wsim import loop, recording
 from wsim.agents.budget import Budget
 from wsim.agents.models import BUILTIN, choose
+from wsim.agents.shorthand import load_given
 from wsim.cli.approve import approved, with_answers
 from wsim.cli.options import (
     EXIT_CODES,
     Answers,
+    Caption,
     CoderModel,
     Device,
     Image,
@@ -38,7 +40,6 @@ from wsim.door import load_beside
 from wsim.errors import UserError
 from wsim.loop.options import Options
 from wsim.phases import since_start
-from wsim.plan.store import load
 from wsim.program.drafted import refuse_unbuildable
 from wsim.rules.planner import plan as make_plan
 from wsim.runs.folder import check_base
@@ -57,6 +58,11 @@ ModelSeconds = Annotated[
 Candidates = Annotated[
     int,
     typer.Option("--candidates", min=1, max=64, help="Patches that are tried side by side; the best of them goes on."),
+]
+Fresh = Annotated[bool, typer.Option("--fresh", help="Ask models anew; take no replies that are kept from before.")]
+Nearest = Annotated[
+    bool,
+    typer.Option("--nearest", help="With --yes: build the nearest world too, where what is asked cannot be simulated."),
 ]
 Confirm = Annotated[
     bool, typer.Option("--confirm/--no-confirm", help="Run an accepted program once more, bare, and compare.")
@@ -80,6 +86,8 @@ def generate(
     max_seconds: Seconds = 3600.0,
     model_timeout: ModelSeconds = 180.0,
     confirm: Confirm = True,
+    fresh: Fresh = False,
+    nearest: Nearest = False,
     replay: Annotated[
         Path | None, typer.Option("--replay", metavar="RUN", help="Make a recorded run again, offline.")
     ] = None,
@@ -87,6 +95,7 @@ def generate(
     runs: Runs = Path("runs"),
     isolation: Isolation = "auto",
     pictures: Pictures = True,
+    caption: Caption = False,
     time_step: TimeStep = None,
     verify: Verify = False,
     params: Set = None,
@@ -108,6 +117,7 @@ def generate(
             device=device,
             isolation=isolation,
             pictures=pictures,
+            caption=caption,
             time_step=time_step,
             verify=verify,
             params=parse_params(params),
@@ -117,6 +127,8 @@ def generate(
         image=image,
         candidates=candidates,
         confirm=confirm,
+        fresh=fresh,
+        nearest=nearest,
         start_up=since_start() or 0.0,
     )
     options.settings.check()
@@ -134,11 +146,16 @@ def _generate(prompt: str, options: Options, runs: Path, path: Path | None, answ
     said = prompt if chosen is None or (path is not None and prompt) else chosen.prompt  # answers are in the sentence
     progress = ConsoleProgress()
 
+    agreed = [builtin]  # whether this plan was shown already
+
     def approve(plan: Plan) -> bool:
-        if builtin:
+        if agreed.pop() if agreed else False:
             return True
         with progress.aside():
             show_plan(plan)
+            if yes and plan.stands_in_for and not options.nearest:
+                console.print("what is asked cannot be simulated; --nearest builds this world in its place")
+                return False
             return yes or typer.confirm("build it?")
 
     check_base(runs)
@@ -182,7 +199,7 @@ def _replay(recorded: Path, runs: Path, device: str) -> None:
 def _agreed(prompt: str, path: Path | None, answers: Path | None, yes: bool, isolation: str) -> Plan | None:
     """The plan to build: a file of answers is a yes, as --yes is; else a person is asked."""
     planner = make_plan if path is None else None
-    proposed = with_answers(make_plan(prompt) if path is None else load(path), planner, answers)
+    proposed = with_answers(make_plan(prompt) if path is None else load_given(path), planner, answers)
     if path is not None:
         refuse_unbuildable(proposed, path, isolation)
     if not (yes or answers):

@@ -19,6 +19,9 @@ Isolation = Annotated[
     str, typer.Option("--isolation", help="Sandbox of the program: auto, bubblewrap, landlock, or none (trust it).")
 ]
 Pictures = Annotated[bool, typer.Option("--pictures/--no-pictures", help="Render camera frames and the video.")]
+Caption = Annotated[
+    bool, typer.Option("--caption", help="Write the time, and what is judged, below the video's pictures.")
+]
 TimeStep = Annotated[
     float | None,
     typer.Option("--time-step", min=1e-5, max=0.1, help="Upper bound of the time step [s]; default: chosen."),

@@ -11,13 +11,13 @@ import typer
 
 from wsim import loop
 from wsim.agents.models import BUILTIN, choose
+from wsim.agents.shorthand import load_given
 from wsim.cli.approve import draw, with_answers
 from wsim.cli.options import Answers, Image, Model, PlannerModel, Runs, refuse_image
 from wsim.cli.show import ConsoleProgress, console, show_plan, show_usage
 from wsim.errors import UserError
 from wsim.loop.options import Options
 from wsim.plan.schema import Plan
-from wsim.plan.store import load
 from wsim.program.drafted import refuse_unbuildable
 from wsim.rules.planner import plan as make_plan
 from wsim.rules.questions import questions
@@ -78,7 +78,7 @@ def _plan(prompt: str, file: Path | None, answers: Path | None) -> Plan:
             'give a sentence, such as wsim plan "A cork ball floats in a tank of water.", or --plan FILE; not both'
         )
     if file is not None:
-        made = with_answers(load(file), None, answers)
+        made = with_answers(load_given(file), None, answers)
         refuse_unbuildable(made, file)
         return made
     return with_answers(make_plan(prompt), make_plan, answers)

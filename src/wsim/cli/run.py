@@ -10,7 +10,7 @@ import typer
 
 from wsim import recording, report
 from wsim import runs as passes
-from wsim.cli.options import EXIT_CODES, Device, Isolation, Pictures, Runs, Set, TimeStep, Verify, parse_params
+from wsim.cli.options import EXIT_CODES, Caption, Device, Isolation, Pictures, Runs, Set, TimeStep, Verify, parse_params
 from wsim.cli.show import ConsoleProgress, show_verdict
 from wsim.errors import UserError
 from wsim.plan.store import load
@@ -28,6 +28,7 @@ def run(
     runs: Runs = Path("runs"),
     isolation: Isolation = "auto",
     pictures: Pictures = True,
+    caption: Caption = False,
     time_step: TimeStep = None,
     verify: Verify = False,
     timeout: Annotated[
@@ -48,6 +49,7 @@ def run(
         device=device,
         isolation=isolation,
         pictures=pictures,
+        caption=caption,
         time_step=time_step,
         verify=verify,
         params=parse_params(params),

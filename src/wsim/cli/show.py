@@ -13,6 +13,7 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TaskID, TextColumn
 from rich.table import Table
 from rich.text import Text
 
+from wsim.plan.asked.covered import not_checked
 from wsim.plan.cost import cost_of
 from wsim.plan.drawing.text import draw_text
 from wsim.plan.unheeded import unheeded
@@ -89,6 +90,10 @@ def show_plan(plan: Plan, questions: Sequence[Question] = (), picture: Path | No
             console.print(f"  {item.name}: {'; '.join(row.sentence() for row in item.relations)}", markup=False)
     for objective in plan.objectives:
         console.print(f"  must: {objective.sentence or f'{objective.object} {objective.kind}'}", markup=False)
+    for line in not_checked(plan):
+        console.print(f"  not checked: {line}", style="yellow", markup=False)
+    if plan.stands_in_for:
+        console.print(f"  stands in for: {plan.stands_in_for}", style="yellow", markup=False)
     for assumption in plan.assumptions:
         console.print(
             f"  assumed: {assumption.subject}: {assumption.choice} ({assumption.why})", style="dim", markup=False
@@ -154,6 +159,8 @@ def show_verdict(verdict: Verdict, folder: Path, report: Path | None = None) -> 
     if verdict.crashes:
         why = "a fault of wsim's, not of the world: report it with its traceback, which wsim judge --json prints"
         console.print(Text(f"  → {why}"))
+    for line in verdict.not_checked:
+        console.print(Text(f"not checked: {line}", style="yellow"))
     console.print(Text(verdict.status, style=STATUS_STYLE[verdict.status]), Text(f" {verdict.summary}"))
     console.print(f"run:    {folder}", soft_wrap=True)
     if report:

@@ -18,6 +18,7 @@ from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.objective import ObjectiveCheck
 from wsim.judge.repair.aim import aim
 from wsim.judge.verdict import Crash, Finding, RepairTarget, Verdict, status_of, unjudged
+from wsim.plan.asked.covered import Told, told
 from wsim.threads import in_one_thread
 
 if TYPE_CHECKING:
@@ -76,7 +77,9 @@ def judge_copies(copies: Sequence[Evidence]) -> list[Verdict]:
     sound = [evidence for evidence, wrong in zip(copies, broken, strict=True) if wrong is None]
     work_out(sound)
     checks = physics_checks()
-    return [_conclusion(checks, *each) for each in zip(copies, runs, broken, strict=True)]
+    asked = {id(evidence.plan): told(evidence.plan) for evidence in copies}
+    concluded = [_conclusion(checks, *each) for each in zip(copies, runs, broken, strict=True)]
+    return [held(verdict, asked[id(each.plan)]) for verdict, each in zip(concluded, copies, strict=True)]
 
 
 def work_out(copies: Sequence[Evidence]) -> None:
@@ -156,6 +159,26 @@ def conclude(findings: list[Finding], evidence: Evidence | None = None, crashes:
         status=status_of(findings, crashes), summary=_summary(findings, crashes), findings=findings,
         crashes=list(crashes),
     )  # fmt: skip
+
+
+def held(verdict: Verdict, asked: Told) -> Verdict:
+    """A verdict that says what of the prompt nothing shows; a world that was not asked all of it is not accepted."""
+    if asked == Told():
+        return verdict
+    status, summary = verdict.status, verdict.summary
+    if status == "accepted" and asked.unasked:
+        status, summary = "blocked", f"Blocked: {asked.unasked}; all {len(verdict.findings)} findings pass."
+    elif asked.not_checked:
+        summary = f"{summary.rstrip('.')}; not checked: {_quoted(asked.not_checked)}."
+    if asked.stands_in_for:
+        summary = f"{summary.rstrip('.')}. It stands in for {asked.stands_in_for.rstrip('.')}."
+    more = {"not_checked": list(asked.not_checked), "stands_in_for": asked.stands_in_for}
+    return verdict.model_copy(update={"status": status, "summary": summary, **more})
+
+
+def _quoted(lines: Sequence[str]) -> str:
+    """The words of the prompt alone: why nothing shows them stands beside the verdict."""
+    return ", ".join(dict.fromkeys(line.partition("': ")[0] + "'" for line in lines))
 
 
 def _summary(findings: list[Finding], crashes: Sequence[Crash]) -> str:

@@ -75,6 +75,7 @@ class Finding(BaseModel):
     limit_from: str = ""  # how the limit was got
     line: str | None = None  # "program.py:12"
     target: RepairTarget | None = None  # what to change, where the finding failed
+    weight: float = Field(1.0, gt=0.0, le=1.0, exclude_if=lambda weight: weight == 1.0)  # of one without numbers
 
 
 class Crash(BaseModel):
@@ -102,7 +103,11 @@ class Crash(BaseModel):
 
 
 class Verdict(BaseModel):
-    """Accepted: every finding passed. Rejected: one did not. Blocked: the world could not be judged, or not in full."""
+    """Accepted: every finding passed. Rejected: one did not. Blocked: the world could not be judged, or not in full.
+
+    `not_checked` is what of the prompt nothing showed, a line each; `stands_in_for` what was asked for in place of this
+    world, and cannot be simulated.
+    """
 
     model_config = ConfigDict(extra="forbid")
 
@@ -110,6 +115,8 @@ class Verdict(BaseModel):
     summary: str
     findings: list[Finding] = Field(default_factory=list)
     crashes: list[Crash] = Field(default_factory=list, exclude_if=lambda crashes: not crashes)
+    not_checked: list[str] = Field(default_factory=list, exclude_if=lambda lines: not lines)
+    stands_in_for: str = Field("", exclude_if=lambda text: not text)
 
     @property
     def failures(self) -> list[Finding]:

@@ -9,6 +9,8 @@ from wsim import report
 from wsim.agents.budget import BudgetError
 from wsim.agents.failures import ModelError
 from wsim.agents.models import BUILTIN, reach
+from wsim.agents.planner import NO_OBJECTIVE
+from wsim.errors import UserError
 from wsim.judge.verdict import Verdict
 from wsim.loop.making import Making
 from wsim.loop.options import Generated, Options
@@ -23,7 +25,7 @@ def generate(
     prompt: str,
     runs: Path = Path("runs"),
     options: Options | None = None,
-    approve: Callable[[Plan], bool] = lambda plan: True,
+    approve: Callable[[Plan], bool] | None = None,
     plan: Plan | None = None,
     progress: Progress = silent,
 ) -> Generated:
@@ -33,7 +35,8 @@ def generate(
         prompt: What the world must be.
         runs: Where run folders go.
         options: Models, budget, device, limits.
-        approve: Shown the plan before anything is built.
+        approve: Shown the plan before anything is built, and one that was changed on the way before it is;
+            without it every plan is built but one that stands in for what cannot be simulated, unless options say so.
         plan: A plan to use as it is, in place of the planner's.
         progress: Told how far it is.
 
@@ -42,20 +45,27 @@ def generate(
         UserError: If a model cannot be reached by its name, or the picture is none; nothing is left behind.
     """
     options, phases = options or Options(), Phases()
+    nearest = options.nearest
+    approve = approve or (lambda plan: nearest or plan.stands_in_for is None)
     if options.replay is None:
         reach(options.models)
     picture = picture_of(options)
     if plan is None and options.models.planner == BUILTIN:
         plan = plan_by_rules(prompt)  # refused before there is a folder
+    if plan is not None and not plan.objectives:
+        raise UserError(NO_OBJECTIVE)
     run, crew = start(prompt, runs, plan, options, progress)
+    making: Making | None = None
     try:
         with phases.phase("plan"):
             plan = keep_plan(run, crew, prompt, plan, picture)  # prompt → plan
         if not approve(plan):
-            run.record(status="not approved", **crew.facts())
+            why = f"it would stand in for {plan.stands_in_for}" if plan.stands_in_for else ""
+            run.record(status="not approved", summary=why, **crew.facts())
             return Generated(run, plan, None, None)
         with phases.phase("try"):
-            verdict = _world(Making(run, crew, plan, options, phases=phases))  # plan → verdict
+            making = Making(run, crew, plan, options, phases=phases, approve=approve)
+            verdict = _world(making)  # plan → verdict
     except (ModelError, BudgetError) as error:  # of the planner: there is nothing to keep but the transcript
         run.record(cause=str(error))
         verdict = Verdict(status="blocked", summary=str(error))
@@ -69,7 +79,7 @@ def generate(
         phases={"start-up": round(options.start_up, 3), **phases.rounded()},
         **crew.facts(),
     )
-    return Generated(run, plan, verdict, report.write(run.path))
+    return Generated(run, plan if making is None else making.plan, verdict, report.write(run.path))
 
 
 def _world(making: Making) -> Verdict:
@@ -81,7 +91,7 @@ def _world(making: Making) -> Verdict:
             making.keep(tried)
             if making.ends:
                 return making.verdict
-            programs = making.repairs(tried[0])  # verdict → programs
+            programs = making.next(tried[0])  # verdict → programs, or another plan
             if not programs:
                 return making.verdict
     except (ModelError, BudgetError) as error:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 from wsim.agents.budget import BudgetError
 from wsim.agents.crew import Crew
+from wsim.agents.failures import ModelError
 from wsim.judge.verdict import Verdict
 from wsim.loop.options import Options
 from wsim.loop.side_by_side import side_by_side
+from wsim.loop.start import change_plan
 from wsim.phases import Phases
 from wsim.plan.schema import Plan
 from wsim.program.compose import compose
@@ -18,7 +20,7 @@ from wsim.runs.attempt import Attempt, Reached, attempt, numerics
 from wsim.runs.bare_run import BareRun
 from wsim.runs.folder import RunFolder
 from wsim.runs.iteration import Iteration
-from wsim.runs.records import Tried
+from wsim.runs.records import Replan, Tried
 
 
 @dataclass
@@ -33,6 +35,8 @@ class Making:
         best: The best attempt so far.
         undone: Patches of the best that are no better.
         phases: Where the time goes.
+        approve: Shown a plan that was changed on the way, before it is built.
+        drafted: Number of the iteration that is the plan's first draft.
     """
 
     run: RunFolder
@@ -42,6 +46,8 @@ class Making:
     best: Attempt | None = None
     undone: list[Attempt] = field(default_factory=list)
     phases: Phases = field(default_factory=Phases)
+    approve: Callable[[Plan], bool] = lambda plan: True
+    drafted: int = 1
 
     @property
     def tried(self) -> int:
@@ -63,10 +69,14 @@ class Making:
 
     @property
     def _unfaulted(self) -> bool:
-        """Whether no check found a fault in the best: one that crashed is the judge's to be mended, not the world's."""
+        """Whether no check found a fault in the best: one that crashed is the judge's to be mended, not the world's.
+
+        So is what the plan does not ask for: no program can show it.
+        """
         assert self.best is not None
         verdict = self.best.verdict
-        return verdict.status == "accepted" or (bool(verdict.crashes) and not verdict.failures)
+        unjudged = bool(verdict.crashes or verdict.not_checked) and verdict.status == "blocked"
+        return verdict.status == "accepted" or (unjudged and not verdict.failures)
 
     def blocked(self, cause: str) -> Verdict:
         """The verdict on a run that could not go on: why, and the best so far."""
@@ -102,7 +112,7 @@ class Making:
     def _iteration(self, program: str) -> Iteration:
         folder = self.run.add(program, self.best.program if self.best else None)
         settings = self.options.settings
-        if self.best is not None and numerics(program) != numerics(Iteration(self.run.iteration(1)).text):
+        if self.best is not None and numerics(program) != numerics(Iteration(self.run.iteration(self.drafted)).text):
             # A world that a finer computation made right must stand a still finer one.
             settings = replace(settings, verify=True)
         return Iteration(folder, self.plan, settings, self.crew.workspace.progress)
@@ -165,7 +175,55 @@ class Making:
             repair=tried.repair,
         )
 
-    def repairs(self, last: Attempt) -> list[str]:
+    def next(self, last: Attempt) -> list[str]:
+        """Programs to try next: patches of the best, or the first draft of a plan that its planner has mended.
+
+        Raises:
+            ModelError: If no patch can be had, nor another plan.
+            BudgetError: If tokens or time ran out.
+        """
+        assert self.best is not None
+        if self.crew.has("coder") and last is not self.best:
+            self.crew.judge(self.best, self.plan, self.undone)  # what it asked for did not help
+        by, fault, given_up = "judge", self.best.plan_fault, None
+        if not fault:
+            try:
+                return self.repairs()
+            except ModelError as error:
+                if error.kind != "gave up":
+                    raise
+                by, fault, given_up = "coder", str(error.args[0]), error
+        if self._replans(by, fault):
+            return [self.first_draft()]
+        if given_up is not None:
+            raise given_up
+        return self.repairs()
+
+    def _replans(self, by: str, fault: str) -> bool:
+        """Whether the plan is another now: its planner is asked once, and a person agrees.
+
+        What was found of the old one stays in the run's folder; the best is to be found anew.
+        """
+        assert self.best is not None
+        asked = bool(self.run.facts().get("replans")) or not self.crew.desk.answers("planner")
+        if asked or not self.crew.has("planner"):
+            return False
+        row = Replan(after=self.best.number, by=by, fault=fault)
+        try:
+            found = self.crew.replan(self.best, self.undone, self.plan, by, fault)
+            row.why, row.kept = found.why, found.plan is None
+        except ModelError as error:
+            found, row.why, row.kept = None, f"no other plan: {error}", True
+        agreed = found is not None and found.plan is not None and self.approve(found.plan)
+        row.approved = agreed
+        self.run.record(replans=[row.model_dump()])
+        if found is None or found.plan is None or not agreed:
+            return False
+        change_plan(self.run, self.plan, found.plan)
+        self.plan, self.best, self.undone, self.drafted = found.plan, None, [], self.tried + 1
+        return True
+
+    def repairs(self) -> list[str]:
         """Programs to try next: patches of the best, as many as are tried side by side and the budget leaves.
 
         None where no model is there to write one, and no suggestion of the judge is left that can be applied as it is.
@@ -174,6 +232,4 @@ class Making:
         count = min(self.options.candidates, self.options.budget.iterations - self.tried)
         if not self.crew.has("coder"):
             return self.crew.mends(self.best, self.undone, self.plan, count)
-        if last is not self.best:
-            self.crew.judge(self.best, self.plan, self.undone)  # what it asked for did not help
         return self.crew.repairs(self.best, self.undone, self.plan, count)

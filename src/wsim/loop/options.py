@@ -29,6 +29,8 @@ class Options:
         image: A picture of what it must look like, for a planner that sees.
         candidates: Patches of an iteration that are tried side by side; the best of them goes on.
         confirm: Run the accepted program once more, bare, and compare.
+        fresh: Ask models anew what they were asked before; else their kept replies answer.
+        nearest: Build the nearest world of a prompt that cannot be simulated, where the planner has one.
         replay: A recorded run that answers in place of the models.
         start_up: What it took to come this far [s].
         standby: A process that loads beside this one, for the run that confirms the first draft.
@@ -40,6 +42,8 @@ class Options:
     image: Path | None = None
     candidates: int = 1
     confirm: bool = True
+    fresh: bool = False
+    nearest: bool = False
     replay: Replay | None = None
     start_up: float = 0.0
     standby: Standby | None = None

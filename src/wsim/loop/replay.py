@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +13,7 @@ from wsim.agents.relay import Replay
 from wsim.errors import UserError
 from wsim.loop.generate import generate
 from wsim.loop.options import Options
-from wsim.loop.start import REFERENCE
+from wsim.loop.start import FIRST_PLAN, REFERENCE
 from wsim.plan.store import load
 from wsim.progress import Progress, silent
 from wsim.runs.folder import RunFolder
@@ -69,9 +70,14 @@ def replay(recorded: Path, runs: Path, progress: Progress = silent, device: str 
         confirm=facts.get("confirm", True),
         replay=answers,
     )
-    given = not any(exchange.role == "planner" for exchange in answers.left)  # the builtin planner's, or a file's
-    plan = load(recorded / "plan.json") if given and (recorded / "plan.json").is_file() else None
-    generated = generate(facts["prompt"], runs, options, plan=plan, progress=progress)
+    # The builtin planner's, or a file's: a planner that is asked later changes it.
+    given = not answers.left or answers.left[0].role != "planner"
+    first = next((path for name in (FIRST_PLAN, "plan.json") if (path := recorded / name).is_file()), None)
+    plan = load(first) if given and first is not None else None
+    agreed = deque([True, *(bool(row.get("approved")) for row in facts.get("replans", []))])
+    generated = generate(
+        facts["prompt"], runs, options, lambda plan: agreed.popleft() if agreed else True, plan, progress
+    )
     if answers.left:
         roles = ", ".join(exchange.role for exchange in answers.left)
         answers.divergences.append(f"{len(answers.left)} recorded exchanges were not asked for: {roles}")

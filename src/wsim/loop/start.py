@@ -15,11 +15,15 @@ from wsim.door import do_beside
 from wsim.loop.options import Options
 from wsim.plan.drawing.picture import draw_picture
 from wsim.plan.schema import Plan
+from wsim.program.patch import diff
 from wsim.progress import Progress
 from wsim.runs.folder import RunFolder, write_whole
 from wsim.tools import Workspace
 
 REFERENCE = "reference.jpg"  # the small picture that the planner saw, in the run's folder
+
+
+FIRST_PLAN = "plan-1.json"  # the plan before it was changed, in the run's folder
 
 
 def picture_of(options: Options) -> bytes | None:
@@ -44,7 +48,8 @@ def start(prompt: str, runs: Path, plan: Plan | None, options: Options, progress
         progress(stage, done, total)
 
     crew = Crew(
-        Desk(options.models, Transcript(run.path), ledger, options.replay), Workspace(run, options.settings, watched)
+        Desk(options.models, Transcript(run.path), ledger, options.replay, options.fresh),
+        Workspace(run, options.settings, watched),
     )
     run.record(
         prompt=prompt,
@@ -66,6 +71,18 @@ def keep_plan(run: RunFolder, crew: Crew, prompt: str, plan: Plan | None, pictur
         run.record(title=plan.title)
     else:
         crew.desk.transcript.builtin("planner", prompt, plan.model_dump(mode="json"))
+    _write(run, plan)
+    return plan
+
+
+def _write(run: RunFolder, plan: Plan) -> None:
     write_whole(run.path / "plan.json", plan.model_dump_json(indent=2) + "\n")
     draw_picture(plan, run.path / "plan.png")
-    return plan
+
+
+def change_plan(run: RunFolder, old: Plan, new: Plan) -> None:
+    """Another plan in place of a run's own: the old one stays beside it, with what was changed."""
+    before, after = (plan.model_dump_json(indent=2) + "\n" for plan in (old, new))
+    write_whole(run.path / FIRST_PLAN, before)
+    write_whole(run.path / "plan.diff", diff(before, after, "plan.json"))
+    _write(run, new)

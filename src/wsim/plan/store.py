@@ -57,8 +57,16 @@ def read(path: str | Path) -> Plan:
     Raises:
         UserError: the file cannot be read, is not JSON, or is not a plan.
     """
-    path = Path(path)
-    return _validated(_parse(path, _text(path)), path)
+    return _validated(parsed(path), Path(path))
+
+
+def parsed(path: str | Path) -> Any:
+    """The JSON of a plan's file, whatever it says.
+
+    Raises:
+        UserError: the file cannot be read, or is not JSON.
+    """
+    return _parse(Path(path), _text(Path(path)))
 
 
 def _validated(data: Any, path: Path) -> Plan:

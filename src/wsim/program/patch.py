@@ -78,10 +78,10 @@ def apply(text: str, edits: Sequence[Edit]) -> str:
     return text
 
 
-def diff(before: str, after: str) -> str:
-    """A unified diff of two versions of program.py."""
+def diff(before: str, after: str, name: str = "program.py") -> str:
+    """A unified diff of two versions of a file."""
     old, new = ([f"{line}\n" for line in _lines(text)] if text else [] for text in (before, after))
-    return "".join(difflib.unified_diff(old, new, "program.py", "program.py", n=2))
+    return "".join(difflib.unified_diff(old, new, name, name, n=2))
 
 
 def _replace(text: str, edit: Edit, which: str) -> str:

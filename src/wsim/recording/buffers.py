@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from wsim.recording.contacts import Pushes
     from wsim.recording.frames import FluidFrame
     from wsim.recording.ties import Ties
-    from wsim.scene.world import Fluid, World
+    from wsim.scene.world import Camera, Fluid, World
 
     Floats = NDArray[np.float32]
 
@@ -100,10 +100,9 @@ class BodyBuffer:
         index = names.time_column(self._times)
         for i, entity in enumerate(self._entities):
             own = [*_motion(qd[i], force[i]), *(names.column(name, array[i]) for name, array in causes.items())]
-            self._stream.send_columns(entity, [index], [*self._pose(q[i], self._nested[i]), *own], strict=True)
+            self._stream.send_columns(entity, [index], [*_pose(q[i], self._nested[i]), *own], strict=True)
         for camera, i in self._followers:
-            seen_from = self._pose(camera_poses(camera, self._world, q[i]), is_nested(camera.prim, self._world))
-            self._stream.send_columns(names.entity_path(camera.prim), [index], seen_from, strict=True)
+            send_camera_poses(self._stream, camera, self._world, index, q[i])
         for i, entity in enumerate(self._heights):
             height = names.column(names.SCALARS, q[i, :, 2].astype(np.float64))
             self._stream.send_columns(entity, [index], [height], strict=True)
@@ -117,11 +116,17 @@ class BodyBuffer:
         self._times, self._seconds, self._rows, self._bytes = [], [], [], 0
         self._causes, self._whole, self._contacts, self._ties = [], [], [], []
 
-    @staticmethod
-    def _pose(q: Floats, nested: bool) -> list[Any]:
-        # Poses are the world's: for a body below another, say so, or Rerun stacks the two.
-        frame = {"parent_frame": [ROOT_FRAME] * len(q)} if nested else {}
-        return list(rr.Transform3D.columns(translation=q[:, :3], quaternion=q[:, 3:], **frame))
+
+def send_camera_poses(stream: Any, camera: Camera, world: World, index: Any, poses: Floats) -> None:
+    """Send where a camera that follows is, by the poses of its body (F, 7) at an index of times."""
+    seen_from = _pose(camera_poses(camera, world, poses), is_nested(camera.prim, world))
+    stream.send_columns(names.entity_path(camera.prim), [index], seen_from, strict=True)
+
+
+def _pose(q: Floats, nested: bool) -> list[Any]:
+    # Poses are the world's: for a body below another, say so, or Rerun stacks the two.
+    frame = {"parent_frame": [ROOT_FRAME] * len(q)} if nested else {}
+    return list(rr.Transform3D.columns(translation=q[:, :3], quaternion=q[:, 3:], **frame))
 
 
 class FluidBuffer:

@@ -30,6 +30,7 @@ LOG_ENTITY = "/log"
 
 WORLD = "wsim.Recording:world"
 METADATA = "wsim.Recording:metadata"
+VIEWS = "wsim.Recording:views"
 VERSION = "wsim.Recording:version"
 FRAME_TIME = "wsim.Frame:time"
 WALL_IMPULSE = "wsim.Frame:wall_impulse"

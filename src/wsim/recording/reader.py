@@ -25,7 +25,7 @@ from wsim.recording.recording import FluidTrack, ImageTrack, Recording, SeenTrac
 from wsim.recording.sensors import read_sensors
 from wsim.recording.table import Clock, Table
 from wsim.recording.ties import read_ties
-from wsim.scene.world import World
+from wsim.scene.world import Camera, World
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -42,7 +42,7 @@ def read(path: str | Path) -> Recording:
     """
     path = Path(path)
     table = _load(path)
-    world, metadata = _setup(table, path)
+    world, views, metadata = _setup(table, path)
     frame_ns, frame_time = table.get(names.FRAME_ENTITY, names.FRAME_TIME, (), np.float64)
     clock = Clock(frame_ns, frame_time)
     body_q, body_qd, force = _bodies(table, world, frame_ns, path)
@@ -61,7 +61,8 @@ def read(path: str | Path) -> Recording:
         fluids=_fluids(table, world, clock),
         scalars=_scalars(table, clock),
         log=_log(table, clock),
-        images=_images(table, world, clock),
+        views=views,
+        images=_images(table, views, clock),
         seen=_seen(table, clock),
         applied_impulse=None if applied is None else applied[:, :, :3],
         applied_work=None if applied is None else applied[:, :, 3],
@@ -98,7 +99,7 @@ def _load(path: Path) -> Table:
     return table
 
 
-def _setup(table: Table, path: Path) -> tuple[World, dict[str, Any]]:
+def _setup(table: Table, path: Path) -> tuple[World, list[Camera], dict[str, Any]]:
     def text(column: str) -> str:
         _, cells = table.cells(names.PROPERTY_ENTITY, column)
         return str(cells[-1][0].as_py()) if cells else ""
@@ -109,7 +110,11 @@ def _setup(table: Table, path: Path) -> tuple[World, dict[str, Any]]:
     if version != str(names.FORMAT_VERSION):
         raise UserError(f"{path} has format {version}, this wsim reads {names.FORMAT_VERSION}; record it anew")
     try:
-        return World.model_validate_json(world), json.loads(text(names.METADATA) or "{}")
+        found = World.model_validate_json(world)
+        views = [Camera.model_validate(each) for each in json.loads(text(names.VIEWS) or "[]")]
+        if found.cameras and views:  # a world's cameras are those that its pictures were taken with
+            found = found.model_copy(update={"cameras": views})
+        return found, views or found.cameras, json.loads(text(names.METADATA) or "{}")
     except (ValidationError, json.JSONDecodeError) as error:
         raise UserError(f"{path}: its world or metadata cannot be read; record it anew: {error}") from error
 
@@ -182,9 +187,9 @@ def _log(table: Table, clock: Clock) -> list[LogLine]:
     return [line for _, _, line in sorted(lines, key=lambda entry: entry[:2])]
 
 
-def _images(table: Table, world: World, clock: Clock) -> dict[str, ImageTrack]:
+def _images(table: Table, views: list[Camera], clock: Clock) -> dict[str, ImageTrack]:
     tracks = {}
-    for camera in world.cameras:
+    for camera in views:
         ns, cells = table.cells(names.entity_path(camera.prim), names.IMAGE)
         tracks[camera.prim] = ImageTrack(clock.seconds(ns), [cell[0].values.to_numpy() for cell in cells])
     return tracks

@@ -15,7 +15,7 @@ from wsim.recording.contacts import ContactTrack
 from wsim.recording.frames import FluidFrame, Frame, LogLine
 from wsim.recording.sensors import SensorTrack
 from wsim.recording.ties import TieTrack
-from wsim.scene.world import World
+from wsim.scene.world import Camera, World
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -88,6 +88,7 @@ class Recording:
     scalars: dict[str, Times]  # by name, (T,); NaN where a frame had none
     log: list[LogLine]  # in order of time, then of writing
     images: Mapping[str, ImageTrack]  # by camera prim
+    views: list[Camera] = field(default_factory=list)  # that pictures are taken with: the world's, or one of its own
     seen: Mapping[str, SeenTrack] = field(default_factory=dict)  # by camera prim; empty where nothing was drawn
     applied_impulse: Floats | None = None  # (T, B, 3) [N s], of fluid and control since the frame before
     applied_work: Floats | None = None  # (T, B) [J], likewise

@@ -25,7 +25,7 @@ ROOT_FRAME = "tf#/"  # Rerun's name for the world's frame
 
 
 def log_scene(stream: Any, world: World) -> None:
-    """Log shapes, cameras and what is known of each prim, all static, to a Rerun stream."""
+    """Log shapes, cords and what is known of each prim, all static, to a Rerun stream; cameras are known at the end."""
     stream.log("World", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True, strict=True)
     reach = scene_reach(world)
     owners: list[Body | Static] = [*world.bodies, *world.statics]
@@ -41,8 +41,6 @@ def log_scene(stream: Any, world: World) -> None:
         stream.log(entity_path(fluid.prim), radii, static=True, strict=True)
     for cord in world.cords:
         log_cord(stream, cord, nested=is_nested(cord.prim, world))
-    for camera in world.cameras:
-        log_camera(stream, camera, camera.width, camera.height, nested=is_nested(camera.prim, world))
 
 
 def log_cord(stream: Any, cord: Spring | Rope, nested: bool = False) -> None:

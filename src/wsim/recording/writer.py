@@ -18,7 +18,7 @@ from rerun.chunk import RrdReader
 from wsim.errors import UserError
 from wsim.recording import columns as names
 from wsim.recording.blueprint import make_blueprint
-from wsim.recording.buffers import BodyBuffer, CordBuffer, FluidBuffer, RowBuffer
+from wsim.recording.buffers import BodyBuffer, CordBuffer, FluidBuffer, RowBuffer, send_camera_poses
 from wsim.recording.causes import WIDTHS
 from wsim.recording.causes import of_bodies as causes_of_bodies
 from wsim.recording.causes import of_frame as causes_of_frame
@@ -29,10 +29,12 @@ from wsim.recording.shapes import is_nested, log_camera, log_scene
 from wsim.scene.world import World
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from types import TracebackType
 
     from numpy.typing import NDArray
+
+    from wsim.scene.world import Camera
 
 RESERVED_METADATA = ("complete", "error")
 SCALAR_NAME = re.compile(r"[A-Za-z0-9_.\-]+(/[A-Za-z0-9_.\-]+)*")
@@ -67,7 +69,8 @@ class RecordingWriter:
         self._metadata = _check_metadata(metadata or {})
         self._last_ns: int | None = None
         self._log_count = 0
-        self._image_sizes = {c.prim: (c.width, c.height) for c in world.cameras}
+        self._image_sizes: dict[str, tuple[int, int]] = {}
+        self._views = {camera.prim: camera for camera in world.cameras}
         self._seen_objects: dict[str, list[str]] = {}
         self._causes: set[str] = set()
         self._closed = False
@@ -137,24 +140,48 @@ class RecordingWriter:
         self._check_open()
         self._sensors.add(_time_ns(t), prim, sample, points)
 
+    def views(self, cameras: Sequence[Camera], times: NDArray[np.float64], body_q: NDArray[Any]) -> None:
+        """Say which cameras the pictures are taken with, where those are not the world's: what is read has them.
+
+        Args:
+            cameras: In the place of the world's, of the same prims; of a world without any, its own.
+            times: Of all frames (F,) [s].
+            body_q: Poses at them (F, B, 7).
+
+        Raises:
+            ValueError: Others than the world's.
+        """
+        self._check_open()
+        if self.world.cameras and [c.prim for c in cameras] != [c.prim for c in self.world.cameras]:
+            raise ValueError(f"views: {[c.prim for c in cameras]}; the world has {list(self._views)}")
+        rows = {body.prim: i for i, body in enumerate(self.world.bodies)}
+        for camera in cameras:
+            if camera == self._views.get(camera.prim):
+                continue
+            self._views[camera.prim] = camera
+            if camera.follows is not None and len(times):
+                index = names.time_column([_time_ns(t) for t in times])
+                poses = np.asarray(body_q[:, rows[camera.follows]], dtype=np.float32)
+                send_camera_poses(self._stream, camera, self.world, index, poses)
+        if list(self._views.values()) != self.world.cameras:
+            told = json.dumps([camera.model_dump() for camera in self._views.values()])
+            self._send_property({names.VIEWS: [told]})
+
     def image(self, t: float, camera_prim: str, rgb: NDArray[np.uint8]) -> None:
         """Record a camera's picture as JPEG.
 
         Args:
             t: When [s].
-            camera_prim: One of `world.cameras`.
+            camera_prim: One of `world.cameras`, or of `views`.
             rgb: (H, W, 3) uint8.
         """
         self._check_open()
-        camera = next((c for c in self.world.cameras if c.prim == camera_prim), None)
-        if camera is None:
-            raise ValueError(f"image: no camera {camera_prim!r}; the world has {sorted(self._image_sizes)}")
+        if camera_prim not in self._views:
+            raise ValueError(f"image: no camera {camera_prim!r}; the world has {sorted(self._views)}")
         if rgb.ndim != 3 or rgb.shape[2] != 3 or rgb.dtype != np.uint8 or 0 in rgb.shape:
             raise ValueError(f"image of {camera_prim}: expected (H, W, 3) uint8, got {rgb.shape} {rgb.dtype}")
         height, width = rgb.shape[:2]
-        if self._image_sizes[camera_prim] != (width, height):  # the frustum must fit the pictures
-            log_camera(self._stream, camera, width, height, nested=is_nested(camera_prim, self.world))
-            self._image_sizes[camera_prim] = (width, height)
+        self._image_sizes[camera_prim] = (width, height)  # which the frustum must fit
         jpeg = io.BytesIO()
         Image.fromarray(rgb).save(jpeg, "JPEG", quality=JPEG_QUALITY)
         blob = np.frombuffer(jpeg.getvalue(), np.uint8)
@@ -197,6 +224,9 @@ class RecordingWriter:
             return self.path
         self._closed = True
         self._flush()
+        for camera in self._views.values():
+            size = self._image_sizes.get(camera.prim, (camera.width, camera.height))
+            log_camera(self._stream, camera, *size, nested=is_nested(camera.prim, self.world))
         state: dict[str, Any] = {"complete": complete} | ({"error": error} if error is not None else {})
         self._write_metadata(state)
         self._stream.flush()

@@ -70,6 +70,7 @@ class RunContents:
     loop: Loop = field(default_factory=Loop)
     shown: Iteration | None = None  # the one that is reported: the best, else the newest
     acceptance: Acceptance | None = None
+    plan_diff: str | None = None  # where the plan was changed on the way
 
     @property
     def newest(self) -> Iteration | None:
@@ -115,6 +116,7 @@ def gather(run_dir: Path) -> RunContents:
         notes=notes,
         loop=loop or Loop(),
         shown=shown,
+        plan_diff=_read(run_dir / "plan.diff", _text, notes),
         acceptance=_read(run_dir / "accepted" / "acceptance.json", _acceptance, notes),
     )
 

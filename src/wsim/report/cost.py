@@ -55,9 +55,11 @@ def _name(loop: Loop, role: str) -> str:
 def _numbers(account: Account | None) -> list[str]:
     if account is None:
         return [""] * 7
-    tokens = (account.input_tokens, account.output_tokens)
+    kept = f" ({_count(account.cache_read_tokens)} kept by the provider)" if account.cache_read_tokens else ""
     return [
-        *(_count(x) for x in (account.requests, account.cached, account.failed, *tokens)),
+        *(_count(x) for x in (account.requests, account.cached, account.failed)),
+        _count(account.input_tokens) + kept,
+        _count(account.output_tokens),
         duration(account.seconds),
         "not known" if account.dollars is None else _dollars(account.dollars),
     ]
@@ -65,7 +67,7 @@ def _numbers(account: Account | None) -> list[str]:
 
 def _total(accounts: list[Account]) -> list[str]:
     """The numbers of all roles together; of the cost, what is known of it."""
-    names = ("requests", "cached", "failed", "input_tokens", "output_tokens", "seconds")
+    names = ("requests", "cached", "failed", "input_tokens", "output_tokens", "cache_read_tokens", "seconds")
     known = [account.dollars for account in accounts if account.dollars is not None]
     sums = {name: sum(getattr(account, name) for account in accounts) for name in names}
     numbers = _numbers(Account(**sums, dollars=sum(known) if known else None))

@@ -39,6 +39,8 @@ def why_it_ended(contents: RunContents) -> Ending | None:
     # A reviewer or a judge that fails is done without; only these two end a run.
     if loop.iterations:
         return Ending("No program was accepted, and the coder's model gave no patch that could be used", cause)
+    if ": cannot: " in cause:
+        return Ending("Nothing was built: what is asked cannot be simulated", cause.partition(": cannot: ")[2])
     return Ending("Nothing was built: the planner's model gave no plan that could be used", cause)
 
 

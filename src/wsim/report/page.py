@@ -16,9 +16,10 @@ from wsim.report import text
 from wsim.report.asked import sentence_of
 from wsim.report.attempts import make_attempts
 from wsim.report.chart import Chart
+from wsim.report.clauses import make_clauses, make_seen
 from wsim.report.contents import RunContents, gather
 from wsim.report.cost import make_cost
-from wsim.report.diff import Diff, difference
+from wsim.report.diff import Diff, difference, make_diff
 from wsim.report.ending import which_is_shown, why_it_ended
 from wsim.report.facts import make_facts, make_parameters
 from wsim.report.fixes import command, describe, make_fixes
@@ -30,7 +31,14 @@ from wsim.report.templates import source, template
 from wsim.runs.folder import write_whole
 
 STATUS_WORDS = {"accepted": "Accepted", "rejected": "Rejected", "blocked": "Blocked"}
-PARTS = ("macros.html", "acceptance.html", "iterations.html", "models.html", "review.html")  # of template.html
+PARTS = (
+    "macros.html",
+    "acceptance.html",
+    "clauses.html",
+    "iterations.html",
+    "models.html",
+    "review.html",
+)  # of template.html
 MOST_CARDS = 8
 
 
@@ -126,6 +134,10 @@ def context(contents: RunContents, most_video_bytes: int) -> dict[str, Any]:
         "charts": charts,
         "plan": contents.plan,
         "objectives": _objectives(contents),
+        "clauses": make_clauses(contents.plan),
+        "seen_clauses": make_seen(contents.plan, shown.review if shown else None),
+        "replans": contents.loop.replans,
+        "plan_diff": make_diff(contents.plan_diff) if contents.plan_diff else None,
         "source": _source(contents, failed),
         "output": str(shown.build().get("log") or "") if shown else "",
         "log": [line for line in recording.log if line.level not in ("TRACE", "DEBUG")] if recording else [],

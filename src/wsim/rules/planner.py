@@ -14,6 +14,7 @@ import re
 
 from wsim.defaults import WALL
 from wsim.errors import UserError
+from wsim.plan.asked.tied import tied
 from wsim.plan.layout import layout
 from wsim.plan.layout.land import set_down
 from wsim.plan.schema import Plan, SimulationPlan
@@ -69,15 +70,17 @@ def plan(prompt: str) -> Plan:
     placed = layout(Plan(objects=themselves(scene.objects, scene.names, cast, joined), **common))
     _hang(scene, placed)
     whole = set_down(Plan(objects=[*placed.objects, *scene.posed], joints=scene.joints, **common))
-    return Plan.model_validate(
-        {
-            **whole.model_dump(),
-            "contacts": [*scene.contacts, *contacts(cast, scene.names, whole)],
-            "objectives": as_they_are(scene.objectives, whole.objects),
-            "cameras": scene.cameras or cameras(whole, above=scene.surface, goes=scene.goes),
-            "steps": steps(whole),
-            "assumptions": cast.assumptions,
-        }
+    return tied(
+        Plan.model_validate(
+            {
+                **whole.model_dump(),
+                "contacts": [*scene.contacts, *contacts(cast, scene.names, whole)],
+                "objectives": as_they_are(scene.objectives, whole.objects),
+                "cameras": scene.cameras or cameras(whole, above=scene.surface, goes=scene.goes),
+                "steps": steps(whole),
+                "assumptions": cast.assumptions,
+            }
+        )
     )
 
 

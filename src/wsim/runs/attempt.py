@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,6 +21,9 @@ from wsim.runs.pulled import pull_missing
 from wsim.runs.trajectory import Trajectory
 from wsim.scene.describe import describe
 from wsim.scene.world import Camera
+
+if TYPE_CHECKING:
+    from wsim.sim.stills import Still
 
 
 class Reached(IntEnum):
@@ -51,6 +55,7 @@ class Attempt:
         review: What the reviewer saw, as text.
         seen: The differences from the plan that a reviewer's model saw; None: none looked.
         repair: What the judge wants mended first, as text.
+        plan_fault: What of the plan no program can make true, as the judge has it.
     """
 
     folder: Path
@@ -61,6 +66,7 @@ class Attempt:
     review: str = ""
     seen: list[str] | None = None
     repair: str = ""
+    plan_fault: str = ""
 
     @property
     def number(self) -> int:
@@ -80,9 +86,9 @@ class Attempt:
 
 
 def _short(finding: Finding) -> float:
-    """By how much a finding misses its limit, as a share of it, between 0 and 1; 1 where it has no numbers."""
+    """By how much a finding misses its limit, as a share of it, between 0 and 1; its weight where it has no numbers."""
     if finding.margin is None or finding.margin >= 0.0:
-        return 1.0
+        return finding.weight
     scale = max(abs(finding.limit or 0.0), abs(finding.expected or 0.0))
     return round(-finding.margin / (scale - finding.margin), 6)
 
@@ -112,6 +118,7 @@ def attempt(iteration: Iteration, cheap_first: bool = True) -> Attempt:
         if verdict is not None:
             made.verdict = iteration.conclude(verdict)
             if verdict.status != "accepted":
+                iteration.leave_stills()
                 return made
     made.reached = Reached.ALL
     return made
@@ -155,7 +162,7 @@ def _framed(made: Attempt, iteration: Iteration) -> Verdict | None:
     things = [item for item in plan.objects if item.primitive not in ("ground", "tank")] if plan else []
     named = {f"/World/{item.name}" for item in things if item.material is None or item.material.opacity == 1.0}
     findings = []
-    for still in sim.Stills(iteration.stage, iteration.settings.device, progress=iteration.progress).draw_start():
+    for still in _stills_of_asked(iteration):
         pixels = {prim: count for prim, count in still.pixels.items() if prim in named and count}
         if named & set(still.pixels) and not pixels:
             findings.append(
@@ -172,6 +179,16 @@ def _framed(made: Attempt, iteration: Iteration) -> Verdict | None:
     if not findings:
         return None
     return Verdict(status="rejected", summary=f"Cameras that show nothing: {len(findings)}.", findings=findings)
+
+
+def _stills_of_asked(iteration: Iteration) -> list[Still]:
+    """The start, seen by the cameras that stay as they are; the others will be framed on what happens."""
+    world = describe(iteration.stage)
+    fixed = [camera for camera in world.cameras if camera.fixed]
+    if not fixed:
+        return []
+    stills = sim.Stills(iteration.stage, iteration.settings.device, fixed, iteration.progress)
+    return stills.draw_start()
 
 
 def _look_at(camera: Camera, stage: Path) -> RepairTarget:

@@ -16,11 +16,13 @@ from wsim.assets import asset_folders
 from wsim.judge import judge
 from wsim.judge.repair.aim import aim
 from wsim.judge.verdict import Finding, Verdict
+from wsim.plan.subjects import asked_about
 from wsim.program import sandbox
 from wsim.program.control import ControlError
 from wsim.progress import Progress, silent
 from wsim.runs import draws
 from wsim.runs.folder import write_json, write_whole
+from wsim.runs.left_stills import leave_stills
 from wsim.runs.pulled import pull_missing
 from wsim.runs.settings import Settings
 from wsim.runs.simulation import is_controlled, open_simulation
@@ -28,7 +30,7 @@ from wsim.runs.verify import Verification
 from wsim.scene.describe import describe
 
 if TYPE_CHECKING:
-    from wsim.plan.schema import Plan
+    from wsim.plan.schema import Objective, Plan
     from wsim.program.sandbox import BuildResult
     from wsim.sim import Simulation, SimulationResult
 
@@ -137,6 +139,7 @@ class Iteration:
             result = self.simulate(seconds)
         except ControlError as error:
             self._note(checks | {"simulation": {"error": str(error)}, "seconds": seconds})
+            self.leave_stills()
             return reject(Finding(**error.finding()), f"The program's control failed ({error.kind}).")
         with _timed(seconds, "judge"):
             verdict = judge_recording(self.recording, self.plan, self.progress)
@@ -172,9 +175,30 @@ class Iteration:
                 review=self.folder / "review.json" if pictures else None,
                 metadata={"program": self.program.name, "params": self.settings.params | self.settings.draws},
                 progress=self.progress,
+                named=self._asked,
+                words=self._judged if self.settings.caption else None,
             )
         seconds |= result.seconds
         return result
+
+    def leave_stills(self) -> None:
+        """Draw stills of what was recorded, where no pictures were taken and some are wanted."""
+        if self.settings.pictures:
+            leave_stills(self.folder, self._asked, self.settings.device, self.progress)
+
+    @property
+    def _judged(self) -> str:
+        """What the world is held to, in a line."""
+        told = [objective.sentence or f"{objective.object} {objective.kind}" for objective in self._objectives]
+        return "; ".join(told)
+
+    @property
+    def _objectives(self) -> list[Objective]:
+        return self.plan.objectives if self.plan else []
+
+    @property
+    def _asked(self) -> list[str]:
+        return asked_about(self.plan) if self.plan else []
 
     def conclude(self, verdict: Verdict) -> Verdict:
         """Write the verdict beside its evidence."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from pydantic import BaseModel, Field
@@ -21,6 +22,17 @@ class Tried(BaseModel):
     repair: str = ""  # what the judge's model wants mended first
 
 
+class Replan(BaseModel):
+    """A row of run.json's replans: the plan was found at fault, and its planner asked."""
+
+    after: int  # the iteration that was the best then
+    by: str  # "judge" or "coder"
+    fault: str
+    why: str = ""  # of the change, or of keeping the plan
+    kept: bool = False  # the planner kept it, or had none that asks for as much
+    approved: bool = False  # it was changed, and a person, or --yes, agreed
+
+
 class Account(BaseModel):
     """What one role has used."""
 
@@ -29,8 +41,14 @@ class Account(BaseModel):
     failed: int = 0
     input_tokens: int = 0
     output_tokens: int = 0
+    cache_read_tokens: int = 0  # of those of the input, what the provider had kept
     seconds: float = 0.0
     dollars: float | None = None  # None: no price is known
+
+    def charge(self, usage: Mapping[str, int]) -> None:
+        """Add the tokens of a reply."""
+        for name in ("input_tokens", "output_tokens", "cache_read_tokens"):
+            setattr(self, name, getattr(self, name) + usage.get(name, 0))
 
 
 class Usage(BaseModel):
@@ -51,6 +69,7 @@ class Loop(BaseModel):
     skills: dict[str, list[str]] = Field(default_factory=dict)  # by iteration: "02"
     notes: list[str] = Field(default_factory=list)
     cause: str = ""  # why it is blocked
+    replans: list[Replan] = Field(default_factory=list)
 
     def tried(self, number: int) -> Tried | None:
         """The row of an iteration; None for one that was not finished."""
@@ -76,6 +95,14 @@ class Difference(BaseModel):
     severity: str = ""
 
 
+class ClauseSeen(BaseModel):
+    """Whether the pictures show a clause of the prompt, by its number from 1."""
+
+    clause: int = 0
+    shown: str = ""  # "yes", "no" or "cannot be seen"
+    why: str = ""
+
+
 class Seen(BaseModel):
     """A reviewer's words; or, without a model, the facts of the shape-index images alone."""
 
@@ -85,6 +112,7 @@ class Seen(BaseModel):
     motion: str = ""
     contacts: str = ""
     differences: list[Difference] = Field(default_factory=list)
+    clauses: list[ClauseSeen] = Field(default_factory=list)
     facts: list[str] = Field(default_factory=list)
 
     @property

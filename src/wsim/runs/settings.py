@@ -18,6 +18,7 @@ class Settings:
     draws: dict[str, float] = field(default_factory=dict)  # set on the stage that is built (`wsim.runs.draws`)
     isolation: str = "auto"
     pictures: bool = True
+    caption: bool = False  # time, and what is judged, below the video's pictures
     time_step: float | None = None  # [s]
     seed: int = 0  # of `wsim.sim.perturb`; 0: as the stage states
     verify: bool = False  # an accepted world is run again, computed more finely

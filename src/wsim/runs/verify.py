@@ -16,8 +16,9 @@ from pxr import Sdf, Usd
 from wsim import recording, sim
 from wsim.judge import judge
 from wsim.judge.convergence import CheckConverged, Rerun
-from wsim.judge.decide import conclude
+from wsim.judge.decide import conclude, held
 from wsim.judge.verdict import Crash, Finding, RepairTarget, Verdict
+from wsim.plan.asked.covered import told
 from wsim.program.control import ControlError
 from wsim.progress import Progress
 from wsim.runs.folder import write_whole
@@ -159,7 +160,7 @@ class Verification:
             crashes += [
                 crash.model_copy(update={"rerun": rerun.name}) for rerun in reruns for crash in rerun.verdict.crashes
             ]
-        return conclude([*first.findings, *found], crashes=crashes)
+        return held(conclude([*first.findings, *found], crashes=crashes), told(self.plan))
 
     def _time_step(self) -> float:
         return float(recording.read(self.folder / "recording.rrd").metadata["time_step"])

@@ -28,7 +28,7 @@ class Contacts(Author):
             a: A body, or an object that never moves.
             b: Another; one of the two moves.
             friction: Coefficient of friction, 0 to 10.
-            restitution: 0 (dead) to 1 (elastic).
+            restitution: 0 (dead) to 1 (elastic): the damping of the contact follows from it.
             rolling: Rolling resistance, 0 to 1, as that of `material`.
 
         Raises:

@@ -111,10 +111,7 @@ class Robot(Handle):
             damp = call.within("damping", law.motor_damping if damping is None else damping, 0.0, _MAX_GAIN)
             most = law.effort if max_force is None else call.positive("max_force", max_force, _MAX_GAIN, "")
             if gain == 0.0 and (damp == 0.0 or not free):
-                call.fail(
-                    f"{prim.GetName()}: its file has no servo for that; give a stiffness and a damping, or of a "
-                    "velocity a damping"
-                )
+                call.fail(f"{prim.GetName()}: {_no_servo(prim)}")
             if (position, velocity) != (None, None) and schema.has(prim, schema.SCHEDULE):
                 call.fail(f"{prim.GetName()} has a schedule, which says where it goes; leave position and velocity out")
             unit = math.pi / 180.0 if is_angular(prim) else 1.0
@@ -283,6 +280,14 @@ class Robots(Author):
             joint.GetBody0Rel().ClearTargets(True)
             if above:
                 prim.CreateRelationship("wsim:fixture", custom=False).SetTargets(above)
+
+
+def _no_servo(prim: Usd.Prim) -> str:
+    """Why a joint cannot be led, and what can."""
+    leader = followed(prim)
+    if leader is not None:
+        return f"it follows {leader[0]}, whose servo moves both; leave it out"
+    return "its file has no servo for that; give a stiffness and a damping, or of a velocity a damping"
 
 
 def _layer(call: Call, named: str | Path) -> Path:

@@ -41,6 +41,7 @@ def read_camera(prim: Usd.Prim) -> Camera:
         height=height,
         follows=str(followed[0].GetPath()) if followed else above,
         turns=bool(value_of(prim, "turns", False)) if followed else above is not None,
+        fixed=bool(value_of(prim, "fixed", False)) or above is not None,
     )
 
 

@@ -31,11 +31,15 @@ class Views(Author):
         height: int = 360,
         follows: Handle | str | None = None,
         turns: bool = False,
+        fixed: bool = False,
     ) -> Handle:
         """Make a camera that stands at `eye` and looks at `target`, Z up in its picture.
 
         One that follows a body is there when the world starts, and keeps its offset from the body's place: its picture
         keeps the body where it was.
+
+        A run's pictures are taken with it as it is if it is fixed, or if it shows what happens: else it is turned,
+        moved or made to follow, once it is known what happened.
 
         Args:
             name: Name of the prim.
@@ -47,6 +51,7 @@ class Views(Author):
             follows: A body that moves, a handle or a name; a robot stands for its base, and where
                 that is held to the world the camera stands, too.
             turns: Whether it turns with that body too, as if it was fixed to it.
+            fixed: Whether it stays as it is, whatever it shows: a view that was asked for.
 
         Raises:
             SceneError: If eye and target are one point, what it follows never moves, the name is taken or a number is
@@ -64,6 +69,7 @@ class Views(Author):
         body = None if follows is None else self._followed(call, follows)
         if call.flag("turns", turns) and follows is None:
             call.fail("turns = True needs follows, the body that it turns with")
+        stays = call.flag("fixed", fixed)
 
         camera = UsdGeom.Camera.Define(self._stage, path)
         prim = camera.GetPrim()
@@ -80,6 +86,7 @@ class Views(Author):
                 "width": (Sdf.ValueTypeNames.Int, columns),
                 "height": (Sdf.ValueTypeNames.Int, rows),
                 **({"turns": (Sdf.ValueTypeNames.Bool, True)} if turns and body is not None else {}),
+                **({"fixed": (Sdf.ValueTypeNames.Bool, True)} if stays else {}),
             },
         )
         if body is not None:

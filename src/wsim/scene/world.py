@@ -312,6 +312,7 @@ class Camera(_Model):
     height: int = 360
     follows: str | None = None  # prim of the body from whose place it keeps its offset
     turns: bool = False  # with that body, as if it was fixed to it
+    fixed: bool = False  # it was asked for: it stays, whatever it shows
 
 
 class Light(_Model):

@@ -6,7 +6,7 @@ fluids' surfaces (`wsim.kernels.render`), and both are blended by depth.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -54,17 +54,18 @@ class CameraImage:
 class Style:
     """Light and sky; colours are linear RGB."""
 
-    sun_color: Color = (0.80, 0.75, 0.66)
+    sun_color: Color = (0.92, 0.85, 0.72)
     sun_direction: Color = (-0.45, 0.55, -0.85)  # from the sun into the scene; a distant light of the world goes first
     ambient_up: Color = (0.24, 0.28, 0.34)  # on faces that look up
     ambient_down: Color = (0.12, 0.11, 0.10)  # on faces that look down
-    zenith: Color = (0.13, 0.30, 0.62)
-    horizon: Color = (0.62, 0.71, 0.80)
-    checker_contrast: float = 0.10  # of the ground's pattern; 0 is plain
+    zenith: Color = (0.10, 0.26, 0.60)
+    horizon: Color = (0.55, 0.67, 0.80)
+    checker_contrast: float = 0.13  # of the ground's pattern; 0 is plain
     reflection: float = 1.0  # 0 is none, 1 is Fresnel's
     scatter: float = 1.0  # 0: water and glass only absorb
     shadows: bool = True
     smooth_edges: bool = True
+    edges: float = 0.55  # share of the light that is taken where a thing ends; 0 draws no edges
 
 
 class CameraRenderer:
@@ -116,6 +117,22 @@ class CameraRenderer:
         self._views = [self._view(camera) for camera in self.cameras]
         self._compile(progress)
 
+    def look_through(self, cameras: Sequence[Camera]) -> None:
+        """Draw with these from now on, in place of the world's, and things of one colour in different shades."""
+        shaded = render_materials.told_apart(self._looks.color, self._thing)
+        render_materials.paint(self.model, [replace(self._looks, color=shaded)])
+        self.cameras = list(cameras)
+        self._views = [self._view(camera) for camera in self.cameras]
+
+    def shapes_in(self, camera: Camera, state: Any, width: int) -> np.ndarray:
+        """The shape-index image (H, W) int32 of a small picture, glass looked through, -1 where there is none."""
+        self._place(state)
+        view = self._view(render_views.resized(camera, width, None))
+        self._follow([view], state)
+        self._look_at_opaque(view, state)
+        shape = view.opaque_shape.numpy()[0]
+        return np.where(shape < int(composite.NO_SHAPE), shape, 0).astype(np.int32) - (shape >= int(composite.NO_SHAPE))
+
     def render(
         self, state: Any, fluids: Mapping[str, Any] | None = None, cameras: Sequence[str] | None = None
     ) -> dict[str, CameraImage]:
@@ -133,12 +150,16 @@ class CameraRenderer:
             KeyError: `fluids` names a fluid that the world does not have.
             ValueError: positions of a wrong shape.
         """
-        self._cords.update(state)
-        self.model.bvh_refit_shapes(state)
+        self._place(state)
         self._fluid_mesh.update(fluids or {})
         wanted = [v for v in self._views if cameras is None or v.camera.prim in cameras]
         self._follow(wanted, state)
         return {view.camera.prim: self._draw(view, state) for view in wanted}
+
+    def _place(self, state: Any) -> None:
+        """Bring the shapes to where a state has their bodies."""
+        self._cords.update(state)
+        self.model.bvh_refit_shapes(state)
 
     def _follow(self, views: Sequence[_View], state: Any) -> None:
         """Bring the cameras that follow bodies to where those are."""
@@ -152,11 +173,15 @@ class CameraRenderer:
     def _init_shapes(self, looks: render_materials.ShapeLooks | None) -> None:
         model = self.model
         self._cords = CordShapes(model, self.world)
+        self._edges = self.style.edges if looks is None else 0.0  # a sensor sees none
         if looks is None:
             looks = render_materials.shape_looks(model, self.world, self._world_index)
             render_materials.paint(model, [looks])
             render_materials.hide(model, model.state(), looks.hidden)
         self._glass = render_materials.Glass(looks.panes, self._device)
+        thing = render_materials.things(model, self.world, looks.ground)
+        self._looks, self._thing = looks, thing
+        self._thing_of_shape = wp.array(thing, dtype=wp.int32, device=self._device)
         self._shape_is_ground = wp.array(looks.ground, dtype=wp.int32, device=self._device)
 
     def _init_fluids(self, world_index: int) -> None:
@@ -225,7 +250,7 @@ class CameraRenderer:
         look.ambient = wp.vec3(*style.ambient_up)
         look.zenith = wp.vec3(*style.zenith)
         look.horizon = wp.vec3(*style.horizon)
-        look.fog_distance = 22.0 * max(radius, 1e-3)
+        look.fog_distance = 34.0 * max(radius, 1e-3)
         look.checker = 2.0 ** round(np.log2(max(radius, 1e-3) / 2.5))
         look.checker_contrast = style.checker_contrast
         look.reflection = style.reflection
@@ -233,7 +258,7 @@ class CameraRenderer:
         look.pixel_angle = render_views.vertical_fov(camera) / camera.height
         return look
 
-    def _draw(self, view: _View, state: Any) -> CameraImage:
+    def _look_at_opaque(self, view: _View, state: Any) -> None:
         self._sensor.update(
             state,
             view.pose,
@@ -244,10 +269,21 @@ class CameraRenderer:
             world_indices=self._world_indices,
             render_config=self._config,
         )
+
+    def _draw(self, view: _View, state: Any) -> CameraImage:
+        self._look_at_opaque(view, state)
         self._composite(view)
         wp.launch(
             display.encode, dim=view.color.shape, inputs=[view.color], outputs=[view.encoded], device=self._device
         )
+        if self._edges > 0.0:
+            wp.launch(
+                display.draw_edges,
+                dim=view.color.shape,
+                inputs=[self._thing_of_shape, view.shape, view.depth, self._edges],
+                outputs=[view.encoded],
+                device=self._device,
+            )
         finish = display.smooth_edges if self.style.smooth_edges else display.quantize
         wp.launch(finish, dim=view.color.shape, inputs=[view.encoded], outputs=[view.rgb], device=self._device)
         return CameraImage(

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 OPAQUE = 0.995  # opacity from which a shape is drawn opaque
 GLASS_GLOW = 0.35  # share of its colour that a thick piece of glass shows of itself: its edges read dark
+SHADES, GOLDEN = 0.12, 0.618034  # of sRGB's values
 CLARITY = 1.2  # how much of a fluid's depth of colour shows across its largest edge
 
 
@@ -121,6 +122,40 @@ def shapes_by_label(model: Any, world: World, world_index: int) -> Iterator[tupl
             path = path.rpartition("/")[0]
         if path:
             yield int(index), *described[path]
+
+
+def things(model: Any, world: World, ground: np.ndarray) -> np.ndarray:
+    """Which shapes are one thing, (shape_count,): those of a body, of a static, of a cord; -1 for the ground."""
+    bodies = model.shape_body.numpy() if model.shape_count else np.zeros(0, dtype=np.int32)
+    owners = {shape.prim: static.prim for static in world.statics for shape in static.shapes}
+    cords = {cord.prim for cord in world.cords}
+    numbers: dict[object, int] = {}
+    found = np.full(max(model.shape_count, 1), -1, dtype=np.int32)
+    for index, body in enumerate(bodies):
+        label = str(model.shape_label[index])
+        above = label.rpartition("/")[0]
+        thing = above if above in cords else int(body) if body >= 0 else owners.get(label, label)
+        if not ground[index]:
+            found[index] = numbers.setdefault(thing, len(numbers))
+    return found
+
+
+def told_apart(color: dict[int, np.ndarray], thing: np.ndarray) -> dict[int, np.ndarray]:
+    """Colours by shape, of which those that several things share differ in shade, up to `SHADES` to both sides."""
+    users: dict[tuple[float, ...], list[int]] = {}
+    for index, rgb in color.items():
+        of_it = users.setdefault(tuple(np.round(rgb, 4).tolist()), [])
+        if thing[index] >= 0 and thing[index] not in of_it:
+            of_it.append(int(thing[index]))
+    shaded = {}
+    for index, rgb in color.items():
+        of_it = users[tuple(np.round(rgb, 4).tolist())]
+        if len(of_it) > 1 and thing[index] >= 0:
+            # Steps of the golden ratio: neighbours in the order in which they were made differ most.
+            step = (of_it.index(int(thing[index])) * GOLDEN) % 1.0
+            rgb = np.clip(rgb * (1.0 + SHADES * (2.0 * step - 1.0)), 0.0, 1.0)
+        shaded[index] = rgb
+    return shaded
 
 
 def _shapes_of(model: Any, world_index: int) -> np.ndarray:

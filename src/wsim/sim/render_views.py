@@ -70,16 +70,26 @@ def default_camera(world: World, width: int = 640, height: int = 360) -> Camera:
     low, high = bounds(world)
     corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * (high - low) + low
     camera = Camera(prim=DEFAULT_CAMERA, eye=(1, 0, 0), target=(0, 0, 0), fov=45.0, width=width, height=height)
-    azimuth, elevation = math.radians(-62.0), math.radians(20.0)
-    back = np.array(
-        (math.cos(azimuth) * math.cos(elevation), math.sin(azimuth) * math.cos(elevation), math.sin(elevation))
-    )
-    right = np.array((-math.sin(azimuth), math.cos(azimuth), 0.0))
+    return fitted(corners, -62.0, 20.0, camera)
+
+
+def fitted(points: np.ndarray, azimuth: float, elevation: float, camera: Camera) -> Camera:
+    """A camera of a lens and a picture, standing where points just fill its frame.
+
+    Args:
+        points: (n, 3) [m].
+        azimuth: Of the side where it stands [deg], from +X to +Y.
+        elevation: [deg].
+        camera: Whose lens, picture and prim it has; it follows nothing.
+    """
+    turn, rise = math.radians(azimuth), math.radians(min(elevation, 89.0))
+    back = np.array((math.cos(turn) * math.cos(rise), math.sin(turn) * math.cos(rise), math.sin(rise)))
+    right = np.array((-math.sin(turn), math.cos(turn), 0.0))
     up = np.cross(back, right)
     half_width = FILLED * math.tan(0.5 * math.radians(camera.fov))
     half_height = FILLED * math.tan(0.5 * vertical_fov(camera))
     # Seen along `back`, a corner is in frame if its offset across is at most its distance times the frame's slope.
-    across, above, toward = corners @ right, corners @ up, corners @ back
+    across, above, toward = points @ right, points @ up, points @ back
     x = 0.5 * (across.min() + across.max())
     y = 0.5 * (above.min() + above.max())
     eye_at = max(
@@ -87,7 +97,10 @@ def default_camera(world: World, width: int = 640, height: int = 360) -> Camera:
     )
     target_at = 0.5 * float(toward.min() + toward.max())
     eye, target = (x * right + y * up + at * back for at in (max(eye_at, target_at + 1e-3), target_at))
-    return camera.model_copy(update={"eye": tuple(float(v) for v in eye), "target": tuple(float(v) for v in target)})
+    place, aim = (tuple(float(v) for v in each) for each in (eye, target))
+    return camera.model_copy(
+        update={"eye": place, "target": aim, "up": (0.0, 0.0, 1.0), "follows": None, "turns": False}
+    )
 
 
 def _corners(world: World) -> Iterator[np.ndarray]:
@@ -95,16 +108,16 @@ def _corners(world: World) -> Iterator[np.ndarray]:
     for static in world.statics:
         for shape in static.shapes:
             if not is_ground(shape):
-                yield _placed(_outline(shape), shape.position, shape.rotation)
+                yield placed(outline(shape), shape.position, shape.rotation)
     for body in world.bodies:
         for shape in body.shapes:
-            points = _placed(_outline(shape), shape.position, shape.rotation)
-            yield _placed(points, body.position, body.rotation)
+            points = placed(outline(shape), shape.position, shape.rotation)
+            yield placed(points, body.position, body.rotation)
     for fluid in world.fluids:
         yield _box(0.5 * np.asarray(fluid.size)) + np.asarray(fluid.center)
 
 
-def _outline(shape: Shape) -> np.ndarray:
+def outline(shape: Shape) -> np.ndarray:
     """Points whose hull encloses a shape, in its own frame [m]."""
     if shape.vertices:
         return np.asarray(shape.vertices)
@@ -115,5 +128,6 @@ def _box(half: np.ndarray) -> np.ndarray:
     return np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * half
 
 
-def _placed(points: np.ndarray, position: tuple[float, ...], rotation: tuple[float, ...]) -> np.ndarray:
+def placed(points: np.ndarray, position: tuple[float, ...], rotation: tuple[float, ...]) -> np.ndarray:
+    """Points (n, 3) of a frame that stands and is turned in another, in that one."""
     return Rotation.from_quat(rotation).apply(points) + np.asarray(position)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from contextlib import ExitStack
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -25,10 +26,12 @@ from wsim.sim.cameras import CameraRenderer
 from wsim.sim.devices import pick_device, steps_in_c
 from wsim.sim.entering import entered
 from wsim.sim.events import Events
+from wsim.sim.framing.frame import write_views
+from wsim.sim.framing.motion import MotionLog
 from wsim.sim.measure import measure
 from wsim.sim.model import build_batch, build_model
 from wsim.sim.perturb import perturb
-from wsim.sim.pictures import Pictures
+from wsim.sim.pictures import Film, Pictures
 from wsim.sim.policies import controller_of, launch_all
 from wsim.sim.result import SimulationResult
 from wsim.sim.rigid import RigidBodies
@@ -283,6 +286,8 @@ class Simulation:
         review: str | Path | None = None,
         metadata: dict[str, Any] | None = None,
         progress: Progress = silent,
+        named: Sequence[str] = (),
+        words: str | None = None,
     ) -> SimulationResult:
         """Simulate the stage's duration and record it.
 
@@ -291,10 +296,12 @@ class Simulation:
         Args:
             recording: Path of the `.rrd`.
             video: Path of an MP4 of the first camera; None renders nothing.
-            frames_dir: Folder for a few still pictures of every camera.
+            frames_dir: Folder for a few still pictures of every camera, of the moments when something happens.
             review: JSON file of what those pictures show: each object's share of them.
             metadata: Kept in the recording beside the simulator's own.
             progress: Told after each frame.
+            named: Names of the objects that the run is about, which its cameras are to show; none: what moves.
+            words: A line below the video's pictures, after their time; None: there is none.
         """
         started = time.perf_counter()
         frames = round(self.world.duration * self.world.frame_rate)
@@ -309,14 +316,14 @@ class Simulation:
             pictures = None
             if video:
                 with phases.phase("prepare the camera"):
-                    beside = not (self.device.is_cuda or self._replays)
-                    drawn = Pictures(
-                        self.world, self.built, writer, video, frames_dir, review, frames, progress, phases, beside
-                    )
+                    again = partial(build_model, self.stage, self.world, self.device, 1, self.dt)
+                    film = Film(Path(video), frames_dir, review, named, words)
+                    drawn = Pictures(self.world, self.built, again, writer, film, progress, phases)
                 pictures = stack.enter_context(drawn)
             writer.log(0.0, "INFO", self._summary())
             events = Events(self.built, self.fluid)
             self.sensors.tell(writer.sample)
+            moved = MotionLog()
             for frame in range(frames + 1):
                 with phases.phase("simulate"):
                     if frame:
@@ -324,11 +331,11 @@ class Simulation:
                     problems = self.problems()
                 measured = measure(self.built, self.state, self.rigid, self.fluid)
                 writer.frame(self.time, measured)
+                moved.add(self.time, measured)
                 for prim, text in events.breakages(measured.scalars):
                     writer.log(self.time, "INFO", text, prim)
                 if pictures and not problems:
-                    with phases.phase("draw"):
-                        pictures.take(frame, self.time, self.state)
+                    pictures.keep(self.time, self.state)
                 progress("simulating", frame, frames)
                 for prim, text in events.departures(self.state):
                     writer.log(self.time, "WARN", text, prim)
@@ -338,9 +345,8 @@ class Simulation:
                     break
             if self.sensors and not problems:
                 self.sensors.ask(self.step_count, self)  # whose turn is at the end
-            if pictures:
-                with phases.phase("draw"):
-                    pictures.finish()
+            motion = moved.motion()
+            pictures.draw(motion) if pictures else write_views(writer, self.world, motion, named)
             if problems:
                 writer.close(complete=False, error="; ".join(problems))
         return SimulationResult(
@@ -389,8 +395,6 @@ class Simulation:
         }
 
     def _summary(self) -> str:
-        return (
-            f"{len(self.world.bodies)} bodies, {self.model.particle_count} fluid particles, "
-            f"{self.substeps} steps of {self.dt * 1e3:.3f} ms a frame (limited by {self.built.time_step.reason}), "
-            f"on {self.device}"
-        )
+        counts = f"{len(self.world.bodies)} bodies, {self.model.particle_count} fluid particles"
+        steps = f"{self.substeps} steps of {self.dt * 1e3:.3f} ms a frame (limited by {self.built.time_step.reason})"
+        return f"{counts}, {steps}, on {self.device}"

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,11 @@ from wsim.scene.describe import describe
 from wsim.sim import render_views
 from wsim.sim.cameras import CameraRenderer
 from wsim.sim.devices import pick_device
+from wsim.sim.framing.frame import Framing
+from wsim.sim.framing.hidden import Hidden
+from wsim.sim.framing.moments import STILLS, chosen
+from wsim.sim.framing.motion import Motion
+from wsim.sim.marks import Marks
 from wsim.sim.model import build_model
 from wsim.sim.seen import ObjectPixels
 
@@ -46,16 +52,20 @@ class Stills:
     Args:
         stage: USD file, checked.
         device: "cpu", "cuda:0", or "auto".
-        camera: The only one to draw, of the stage's or another; all of the stage's by default, and where it has none
-            the default view.
+        cameras: Those to draw, the stage's or others; all of the stage's by default, and where it has none the
+            default view.
         progress: Told about compilation.
     """
 
     def __init__(
-        self, stage: str | Path, device: str = "auto", camera: Camera | None = None, progress: Progress = silent
+        self,
+        stage: str | Path,
+        device: str = "auto",
+        cameras: Sequence[Camera] | None = None,
+        progress: Progress = silent,
     ) -> None:
         world = describe(Path(stage))
-        self.world = world if camera is None else world.model_copy(update={"cameras": [camera]})
+        self.world = world if cameras is None else world.model_copy(update={"cameras": list(cameras)})
         self._built = build_model(Path(stage), self.world, pick_device(device, world))
         model = self._built.model
         self._state = model.state()
@@ -67,6 +77,29 @@ class Stills:
         """The world as the stage states it, one still a camera."""
         particles = self._state.particle_q.numpy() if self._built.fluids[0] else np.zeros((0, 3))
         return self._draw(0.0, {prim: particles[part] for prim, part in self._built.fluids[0].items()})
+
+    def draw_moments(self, recording: Recording, named: Sequence[str] = (), most: int = STILLS) -> list[Still]:
+        """What happens in a recording of the world, by its cameras, framed on it as a run's are; one moment at a time.
+
+        Args:
+            recording: Also of a run that broke: its finite frames are drawn.
+            named: Names of the objects that it is about; none: what moves.
+            most: Moments.
+
+        Raises:
+            ValueError: The recording is of another world.
+        """
+        motion = Motion.of(recording)
+        framing = Framing(self.world, motion, named, Hidden(self._renderer, self._built))
+        self._renderer.look_through(framing.cameras() or self._renderer.cameras)
+        times = motion.time[chosen(framing.moments, len(motion.time), most)]
+        marks = Marks(self.world, motion.push)
+        frames = [recording.frame_index(float(time)) for time in times]
+        return [
+            replace(still, rgb=marks.draw(still.rgb, still.camera, frame, motion.body_q[frame]))
+            for frame, time in zip(frames, times, strict=True)
+            for still in self.draw(recording, float(time))
+        ]
 
     def draw(self, recording: Recording, time: float) -> list[Still]:
         """The world as a recording of it has it at its frame nearest to a time [s], one still a camera.

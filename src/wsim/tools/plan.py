@@ -9,15 +9,19 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import Field
 
 from wsim.errors import UserError
+from wsim.plan.asked.covered import not_checked
+from wsim.plan.feasible.plan import refuse_impossible
 from wsim.plan.store import load, save
 from wsim.plan.unheeded import unheeded
 from wsim.tools.base import Arguments, Result, Tool, Workspace
 from wsim.tools.text import number, numbers, table
 
 if TYPE_CHECKING:
-    from wsim.plan.schema import Joint, Plan, PlanObject
+    from wsim.plan.schema import Joint, Plan, PlanObject, Vec3
 
-Part = Literal["all", "objects", "relations", "joints", "contacts", "cameras", "objectives", "assumptions", "steps"]
+Part = Literal[
+    "all", "objects", "relations", "joints", "cords", "contacts", "cameras", "objectives", "assumptions", "steps"
+]
 SIDE_NAME = "plan.json.new"
 
 
@@ -61,6 +65,7 @@ def write_plan(workspace: Workspace, asked: WritePlan) -> Result:
     side.write_bytes(text.encode("utf-8", "surrogatepass"))  # what is no text, the reader says
     try:
         plan = load(side)
+        refuse_impossible(plan, side)
     except UserError as error:
         return Result(f"not written: {str(error).removeprefix(f'{side}: ')}", ok=False)
     finally:
@@ -86,6 +91,7 @@ def _show(plan: Plan, part: Part, name: str) -> list[str]:
         "relations": _relations,
         "objectives": _objectives,
         "joints": _joints,
+        "cords": _cords,
         "contacts": _contacts,
         "cameras": _cameras,
         "assumptions": _assumptions,
@@ -95,10 +101,13 @@ def _show(plan: Plan, part: Part, name: str) -> list[str]:
         return parts[part](plan, name) or [f"no {part}" + (f" that name {name}" if name else "")]
     run = plan.simulation
     lines = [f"{plan.title}: {number(run.duration)} s at {number(run.frame_rate)} frames/s", *_picture(plan)]
-    for key in ("objects", "relations", "objectives", "joints", "contacts", "cameras"):
+    for key in ("objects", "relations", "objectives", "joints", "cords", "contacts", "cameras"):
         lines += parts[key](plan, name)
     rest = [f"{len(rows)} {key}" for key, rows in (("assumptions", plan.assumptions), ("steps", plan.steps)) if rows]
-    lines += [f"not done: {line}" for line in unheeded(plan) if not name]
+    if not name:
+        lines += [f"not done: {line}" for line in unheeded(plan)]
+        lines += [f"not checked: {line}" for line in not_checked(plan)]
+        lines += [f"stands in for: {plan.stands_in_for}"] if plan.stands_in_for else []
     return [*lines, *([f"also: {', '.join(rest)}"] if rest else [])]
 
 
@@ -184,6 +193,25 @@ def _joints(plan: Plan, name: str) -> list[str]:
     ]  # fmt: skip
     head = ("joint", "kind", "parent", "child", "axis", "anchor from the child [m]", "limits", "drive")
     return table(head, rows) if rows else []
+
+
+def _cords(plan: Plan, name: str) -> list[str]:
+    rows = [
+        [
+            cord.name, cord.kind, _end(cord.a, cord.anchor_a), _end(cord.b, cord.anchor_b),
+            ", ".join(f"{each.object} {each.side}" for each in cord.around or ()), number(cord.length),
+            number(cord.stiffness), number(cord.damping), number(cord.rest_length),
+        ]
+        for cord in plan.cords
+        if _about(name, cord.a, cord.b, *(each.object for each in cord.around or ()))
+    ]  # fmt: skip
+    head = ("cord", "kind", "from", "to", "around", "length [m]", "N/m", "N s/m", "rest length [m]")
+    return table(head, rows) if rows else []
+
+
+def _end(name: str | None, anchor: Vec3 | None) -> str:
+    """What a cord's end is fixed to, and where."""
+    return f"{name or 'the world'}{f' at {numbers(anchor)}' if anchor else ''}"
 
 
 def _contacts(plan: Plan, name: str) -> list[str]:

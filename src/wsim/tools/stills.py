@@ -44,7 +44,8 @@ def still(workspace: Workspace, asked: StillOf) -> Result:
         raise UserError(f"iterations/{stage.parent.name}/{path.name} has no frames; see the verdict")
     if found is not None and asked.time > found.time[-1] + 0.5 / found.world.frame_rate:
         raise UserError(f"time: {number(asked.time)} s is after the recording's end at {number(found.time[-1])} s")
-    stills = sim.Stills(stage, workspace.settings.device, _camera(describe(stage), asked), workspace.progress)
+    world = found.world if found is not None and found.world.cameras else describe(stage)
+    stills = sim.Stills(stage, workspace.settings.device, [_camera(world, asked)], workspace.progress)
     (drawn,) = stills.draw(found, asked.time) if found is not None else stills.draw_start()
     name = still_name(_file_stem(asked) or drawn.camera.prim, drawn.time)
     target = stage.parent / "stills" / name

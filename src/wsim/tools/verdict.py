@@ -50,6 +50,7 @@ def verdict_lines(path: Path, passed: bool = False) -> list[str]:
         lines += table(HEAD, [_row(finding) for finding in verdict.failures])
         lines += dict.fromkeys(line for finding in verdict.failures for line in _words(finding))  # each is said once
     lines += [f"{crash.message}; this is a fault of wsim's, not of the world" for crash in verdict.crashes]
+    lines += [f"not checked: {line}" for line in verdict.not_checked]
     if good and passed:
         rows = [[*_row(finding), number(finding.margin)] for finding in good]
         lines += ["passed:", *table((*HEAD, "margin"), rows)]

@@ -67,7 +67,7 @@ def test_a_denial_keeps_the_limit_from_the_other_side(stack):
         ("always[2, 9](settles(box_3))", "box_3: the window [2, 9] s is not covered: the recording has 3 s"),
         ("touches(box_3, lamp)", "the world has no 'lamp'; it has /World/box_1"),
         ("rolls_without_slip(box_3)", "not round"),
-        ("contained_in(box_3, ground)", "no container; those are none"),
+        ("contained_in(box_3, ground)", "no container, and not hollow either; containers are none"),
     ],
 )
 def test_what_cannot_be_judged_fails_and_says_why(stack, said, why):

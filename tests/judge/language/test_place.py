@@ -65,7 +65,7 @@ def test_contained_in_a_turned_tank(tank_world):
     rim = ball_and_box(tank_world, [5.0, 0.0, 0.55])
     assert one("contained_in(ball, tank, 0 m)", rim).margin[0] == pytest.approx(-0.05)
     assert one("stays_inside(ball, tank)", rim).satisfied[0]
-    with pytest.raises(MissingError, match="no container; those are /World/tank"):
+    with pytest.raises(MissingError, match="no container, and not hollow either; containers are /World/tank"):
         one("contained_in(ball, wall)", rim)
 
 

@@ -27,7 +27,11 @@ from wsim.scene import Drive, Fluid, Scene, Tank
         ("mesh file", "wsim.scene.Scene.mesh"),
         ("push a body", "wsim.program.control_world.ControlWorld.apply_force"),
         ("where is the water surface", "wsim.scene.Fluid.surface"),
-        ("bouncy", "wsim.scene.Material.restitution"),
+        ("restitution", "wsim.scene.Scene.contact"),  # what sets it, before what tells of it
+        ("friction", "wsim.scene.Scene.contact"),
+        ("rolling", "wsim.scene.Scene.material"),
+        ("contact damping", "wsim.scene.Scene.contact"),
+        ("bouncy", "wsim.scene.Scene.contact"),
         ("GetPrimAtPath", "pxr.Usd.Stage.GetPrimAtPath"),
         ("linspace", "numpy.linspace"),
         ("ModelBuilder add_body", "newton.ModelBuilder.add_body"),

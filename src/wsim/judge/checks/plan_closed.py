@@ -89,12 +89,13 @@ class CheckPlanClosed(Check):
             yield self._extra(body.prim, f"led along a path; the plan gives {item.name} none", "controller", "path")
 
     def _couplings(self, evidence: Evidence, plan: Plan) -> Iterator[Finding]:
-        """What pulls or couples, and is no joint. A plan has no field for it: its words must name it."""
+        """What pulls or couples, and is no joint: a cord of the plan, or what its words name."""
         world = evidence.world
         for what, things in (("gear", world.gears), ("spring", world.springs), ("rope", world.ropes)):
             for thing in things:
                 own = isinstance(thing, Gear) and within(evidence, thing.prim, thing.first, thing.second)
-                if not own and not named(plan, what):
+                planned = any(thing.prim == evidence.prim(cord.name) for cord in plan.cords)
+                if not (own or planned) and (plan.cords or not named(plan, what)):
                     yield self._extra(thing.prim, f"a {what}; nothing in the plan speaks of one", "joint", what)
 
     def _extra(self, prim: str, what: str, kind: str, parameter: str = "") -> Finding:

@@ -70,6 +70,8 @@ class CheckPlanJoints(Check):
                 continue
             if joint.fixture is not None and within(evidence, joint.prim, joint.child, joint.fixture):
                 continue  # to its own base, which never moves
+            if evidence.plan and any(cord.owns(joint.prim.rpartition("/")[2]) for cord in evidence.plan.cords):
+                continue  # between a cable's links
             target = RepairTarget(kind="joint", prim=joint.prim, direction="remove", why="the plan has no such joint")
             held = joint.parent or joint.fixture or "the world"
             message = f"{joint.prim} is a {joint.kind} joint between {held} and {joint.child}; the plan has none there"

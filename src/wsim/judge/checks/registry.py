@@ -28,6 +28,7 @@ from wsim.judge.checks import (
     plan,
     plan_closed,
     plan_contacts,
+    plan_cords,
     plan_joints,
     plan_land,
     plan_motion,
@@ -49,8 +50,8 @@ if TYPE_CHECKING:
 RUN = (run,)
 PHYSICS = (
     physics, settled, stated, continuity, motion, forces, recorded, recorded_state, recorded_ties, impacts, rolling,
-    catches, energy, contact, rest, joint, cord, mass, plan, plan_closed, plan_joints, plan_contacts, plan_motion,
-    plan_vehicles, plan_land,
+    catches, energy, contact, rest, joint, cord, mass, plan, plan_closed, plan_joints, plan_cords, plan_contacts,
+    plan_motion, plan_vehicles, plan_land,
     fluid, fluid_books, fluid_push, lift, fluid_height, water, camera,
 )  # fmt: skip
 

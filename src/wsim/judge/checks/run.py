@@ -175,7 +175,8 @@ class CheckPlanObjects(Check):
         everything = {"/".join(prim.split("/")[:3]) for prims in has.values() for prim in prims}
         found = []
         for item in evidence.plan.objects:
-            kind = item.role if item.role in ("container", "fluid") else item.state
+            # A bucket of the catalogue is a container, too: what can be in it is its objectives' affair.
+            kind = "container" if item.primitive == "tank" else "fluid" if item.role == "fluid" else item.state
             missing = [evidence.prim(name) for name in item.prims if evidence.prim(name) not in everything]
             prim = missing[0] if missing else evidence.prim(item.prims[0])
             if missing:
@@ -191,7 +192,8 @@ class CheckPlanObjects(Check):
             elif item.primitive == "robot" and not _linked(evidence, prim):
                 found.append(self.failed(f"{prim} has no links that joints hold together, as a robot has", prim=prim))
         planned = {evidence.prim(name) for item in evidence.plan.objects for name in item.prims}
-        for prim in sorted(everything - planned):
+        links = {prim for prim in everything for cord in evidence.plan.cords if cord.owns(prim.rpartition("/")[2])}
+        for prim in sorted(everything - planned - links):
             message = f"{prim} is in the world, but not in the plan"
             found.append(self.failed(message, prim=prim))
         return found or [self.passed(f"The world has the plan's {len(evidence.plan.objects)} objects and no others")]

@@ -14,6 +14,7 @@ from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.between import Course, peaks
 from wsim.judge.language.contacts import PARTS, about, swept_gap, touch_reach
+from wsim.judge.language.hollows import hollow_of
 from wsim.judge.language.measure import Measure, measures, mends
 from wsim.judge.repair.drive import by_drive
 from wsim.judge.repair.lasting import leak
@@ -102,40 +103,26 @@ def _nearest_on(sign: float, path: Floats) -> Floats:
 
 @measures(ContainedIn)
 def _contained_in(asked: ContainedIn, signals: Signals) -> list[Measure]:
-    prim, container = signals.prim(asked.object), signals.container(asked.ref)
-    solid, value = signals.solid(asked.object), room_in(signals, asked.object, asked.ref)
+    prim, hollow = signals.prim(asked.object), hollow_of(signals, asked.ref)
+    solid, value = signals.solid(asked.object), hollow.room(signals, asked.object)
     tolerance = LASTING * solid.smallest if asked.within is None else asked.within
     source = f"{LASTING:g} of its smallest extent, as the check of penetration has it"
     return [
         Measure(
-            f"room to the walls, floor and rim of {container.prim}", prim, value, -tolerance, "m", solid.smallest,
+            f"room to the walls, floor and rim of {hollow.prim}", prim, value, -tolerance, "m", solid.smallest,
             source if asked.within is None else "the objective's", at_most=False,
         )
     ]  # fmt: skip
 
 
-def room_in(signals: Signals, name: str, ref: str) -> Floats:
-    """The least room between a body and the walls, the floor and the rim of a container, (W, T) [m]."""
-    container, q, solid = signals.container(ref), signals.frames(name).body_q[:, 0], signals.solid(name)
-    axes = rotate(np.array(container.rotation, dtype=np.float64), np.eye(3))
-    local = Evidence.local(container, q[:, :3])
-    room = []
-    for axis, half in enumerate(np.array(container.inner_size) / 2):
-        low, high = solid.reach(q[:, 3:], axes[axis])
-        room += [half - local[:, axis] - high, half + local[:, axis] + low]
-    return signals.fold(np.min(room, axis=0))
-
-
 @measures(StaysInside)
 def _stays_inside(asked: StaysInside, signals: Signals) -> list[Measure]:
-    prim, container = signals.prim(asked.object), signals.container(asked.ref)
+    prim = signals.prim(asked.object)
     if not signals.moves(asked.object):
-        return [_fluid_inside(asked, signals, container)]
-    p = Evidence.local(container, signals.centre(asked.object))
-    half = np.array(container.inner_size) / 2
-    room = np.minimum((half[:2] - np.abs(p[..., :2])).min(axis=-1), p[..., 2] + half[2])
-    size = signals.solid(asked.object).smallest
-    what = f"way from its centre to the walls and floor of {container.prim}"
+        return [_fluid_inside(asked, signals, signals.container(asked.ref))]
+    hollow = hollow_of(signals, asked.ref)
+    room, size = hollow.depth(signals, asked.object), signals.solid(asked.object).smallest
+    what = f"way from its centre to the walls and floor of {hollow.prim}"
     source = "the objective's" if asked.within else "the walls' inner faces"
     return [Measure(what, prim, room, -asked.within, "m", size, source, at_most=False)]
 
@@ -296,8 +283,11 @@ def _keep_in(asked: ContainedIn | StaysInside, finding: Finding, evidence: Evide
         return leak(finding, evidence)
     prim, ref = finding.prim or "", evidence.prim(asked.ref)
     container = evidence.container(ref)
-    if container is None:
-        return RepairTarget(kind="missing object", prim=ref, direction="add", why="there is nothing to stay inside of")
+    if container is None:  # a bucket, say: whether it is missed or left, aiming is what is open
+        why = f"it is not in {ref}: let it start there, or aim it there"
+        return RepairTarget(
+            kind="settlement", prim=finding.prim, parameter="position", direction="change", unit="m", why=why
+        )
     frame = evidence.recording.frame_index(finding.time or 0.0)
     p = evidence.local(container, evidence.body_q[frame, evidence.index(prim), :3])
     if not started_in(evidence, prim, container):

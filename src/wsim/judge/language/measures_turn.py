@@ -8,8 +8,8 @@ import numpy as np
 
 from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.judge.language.contacts import about, gap, swept_gap, touch_reach
+from wsim.judge.language.hollows import hollow_of
 from wsim.judge.language.measure import Measure, measures, mends
-from wsim.judge.language.measures_place import room_in
 from wsim.judge.repair.drive import by_drive
 from wsim.judge.verdict import Finding, RepairTarget
 from wsim.plan.schema.formula_contact import BouncesTo
@@ -132,7 +132,8 @@ def _tops(signals: Signals, name: str) -> tuple[Floats, Floats]:
 @measures(Counts)
 def _counts(asked: Counts, signals: Signals) -> list[Measure]:
     """How many of some objects are in a container, at each frame."""
-    inside = [room_in(signals, name, asked.ref) >= -0.05 * signals.solid(name).smallest for name in asked.objects]
+    hollow = hollow_of(signals, asked.ref)
+    inside = [hollow.room(signals, name) >= -0.05 * signals.solid(name).smallest for name in asked.objects]
     value = np.sum(inside, axis=0).astype(np.float64)
     return [
         Measure(

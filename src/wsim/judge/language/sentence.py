@@ -10,6 +10,7 @@ from lark import Lark, Token, Transformer, UnexpectedInput, v_args
 from lark.exceptions import VisitError
 from pydantic import TypeAdapter, ValidationError
 
+from wsim.plan.schema import formula_fluid
 from wsim.plan.schema.formula import (
     VOCABULARY,
     Always,
@@ -252,10 +253,16 @@ def unit_of(kind: type[Predicate], field: str) -> str:
     return str(extra["unit"]) if isinstance(extra, dict) and "unit" in extra else ""
 
 
-def vocabulary() -> str:
-    """Every predicate as it is written, with what may be left out in brackets, and what it says: a line each."""
+def vocabulary(fluids: bool) -> str:
+    """Predicates as they are written, with what may be left out in brackets, and what each says: a line each.
+
+    Args:
+        fluids: Those about fluids, or all others.
+    """
     lines = []
     for op, kind in VOCABULARY.items():
+        if (kind.__module__ == formula_fluid.__name__) != fluids:
+            continue
         fields = []
         for name, field in kind.model_fields.items():
             if name != "op":

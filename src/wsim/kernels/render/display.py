@@ -36,6 +36,56 @@ def encode(
 
 
 @wp.func
+def is_edge(
+    group: wp.array(dtype=wp.int32),
+    shape: wp.array2d(dtype=wp.int32),
+    depth: wp.array2d(dtype=float),
+    row: int,
+    column: int,
+    other_row: int,
+    other_column: int,
+) -> bool:
+    """Whether a pixel is of a thing that ends beside it: before another one, the ground or the sky."""
+    if other_row < 0 or other_column < 0 or other_row >= shape.shape[0] or other_column >= shape.shape[1]:
+        return False
+    mine = shape[row, column]
+    theirs = shape[other_row, other_column]
+    if mine < 0 or group[mine] < 0:
+        return False
+    if theirs < 0:
+        return True
+    if group[mine] == group[theirs]:
+        return False
+    # Of two things that touch, the line is on one side alone: that of the nearer, or else of the first.
+    near = depth[row, column]
+    far = depth[other_row, other_column]
+    if group[theirs] < 0 or wp.abs(near - far) > 1.0e-3 * near:
+        return near <= far
+    return mine < theirs
+
+
+@wp.kernel(enable_backward=False)
+def draw_edges(
+    # Data in:
+    group: wp.array(dtype=wp.int32),  # what shapes belong together, by index; below 0 has no edge
+    shape: wp.array2d(dtype=wp.int32),
+    depth: wp.array2d(dtype=float),  # [m]
+    darkness: float,  # share of the light that an edge takes
+    # Data in and out:
+    encoded: wp.array2d(dtype=wp.vec3f),  # sRGB, 0 .. 1
+):
+    """Darken the pixels where a thing ends: things of one colour are told apart."""
+    row, column = wp.tid()
+    if (
+        is_edge(group, shape, depth, row, column, row - 1, column)
+        or is_edge(group, shape, depth, row, column, row + 1, column)
+        or is_edge(group, shape, depth, row, column, row, column - 1)
+        or is_edge(group, shape, depth, row, column, row, column + 1)
+    ):
+        encoded[row, column] = encoded[row, column] * (1.0 - darkness)
+
+
+@wp.func
 def luma(color: wp.vec3) -> float:
     """Brightness of an sRGB colour (Rec. 601)."""
     return 0.299 * color[0] + 0.587 * color[1] + 0.114 * color[2]

@@ -2,6 +2,7 @@
 
 from wsim.plan.schema.actuation import ArcPlan, BrakePlan
 from wsim.plan.schema.base import Name, Vec3
+from wsim.plan.schema.clause import Clause
 from wsim.plan.schema.constructions import (
     AreaPlan,
     Clearance,
@@ -18,6 +19,7 @@ from wsim.plan.schema.constructions import (
     Proxy,
     RoadLayer,
 )
+from wsim.plan.schema.cords import Around, Cord
 from wsim.plan.schema.draft import (
     Assumption,
     AssumptionKind,
@@ -51,12 +53,15 @@ __all__ = [
     "Actuation",
     "ArcPlan",
     "AreaPlan",
+    "Around",
     "Assumption",
     "AssumptionKind",
     "BrakePlan",
     "CameraPlan",
+    "Clause",
     "Clearance",
     "Contact",
+    "Cord",
     "External",
     "FromAsset",
     "FromRobot",

@@ -9,6 +9,8 @@ from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, mod
 from wsim.defaults import DURATION, FRAME_RATE
 from wsim.limits import NO_BOUND
 from wsim.plan.schema.base import Name, NotNegative, Number, Positive, Share, Sparse, Strict, Text, Vec3, Word
+from wsim.plan.schema.clause import Clause
+from wsim.plan.schema.cords import Cord
 from wsim.plan.schema.formula import Formula
 from wsim.plan.schema.objects import PlanObject
 
@@ -104,7 +106,10 @@ class Contact(Sparse):
 
 
 class CameraPlan(Strict):
-    """A camera: from `eye` at `target`, or by a `view` of the scene or of one object, which the layout resolves."""
+    """A camera: from `eye` at `target`, or by a `view` of the scene or of one object, which the layout resolves.
+
+    One that the prompt asks for has its words, and is kept. Others are corrected where they do not show what happens.
+    """
 
     name: Name
     eye: Vec3 | None = None  # [m]
@@ -112,11 +117,12 @@ class CameraPlan(Strict):
     view: View | None = None
     of: Name | None = None
     follows: Name | None = None  # an object that moves: it keeps its offset from that, which is where it starts
+    words: Text = ""  # of the prompt, that ask for this very view
 
     @model_serializer(mode="wrap")
     def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Without `follows` where it stands, so that a plan without it reads as it always did."""
-        return {name: value for name, value in write(self).items() if name != "follows" or value}
+        """Without `follows` and `words` that it lacks, so that a plan without them reads as it always did."""
+        return {name: value for name, value in write(self).items() if name not in ("follows", "words") or value}
 
     @model_validator(mode="after")
     def _one_way(self) -> CameraPlan:
@@ -224,6 +230,9 @@ class Assumption(Sparse):
         return self
 
 
+_UNWRITTEN = ("contacts", "cords", "clauses", "stands_in_for")  # where they are empty
+
+
 class Draft(Strict):
     """Everything that is to be built and judged: each part valid by itself."""
 
@@ -233,19 +242,22 @@ class Draft(Strict):
     image: ReferenceImage | None = None
     objects: list[PlanObject] = Field(max_length=10_000)
     joints: list[Joint] = Field(default_factory=list, max_length=10_000)
+    cords: list[Cord] = Field(default_factory=list, max_length=1000)
     contacts: list[Contact] = Field(default_factory=list, max_length=10_000)
     cameras: list[CameraPlan] = Field(default_factory=list, max_length=100)
     sensors: list[SensorPlan] = Field(default_factory=list, max_length=1000)
     steps: list[Step] = Field(default_factory=list, max_length=1000)
     objectives: list[Objective] = Field(default_factory=list, max_length=10_000)
+    clauses: list[Clause] = Field(default_factory=list, max_length=1000)  # of the prompt; none: nothing is held to it
+    stands_in_for: Text | None = None  # what was asked for and cannot be simulated, where this world is the nearest
     simulation: SimulationPlan = Field(default_factory=SimulationPlan)
     outputs: Outputs = Field(default_factory=Outputs)
     assumptions: list[Assumption] = Field(default_factory=list, max_length=10_000)
 
     @model_serializer(mode="wrap")
     def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Without `contacts` where there are none, so that a plan without them reads as it always did."""
-        return {name: value for name, value in write(self).items() if name != "contacts" or value}
+        """Without what it has none of, so that a plan without it reads as it always did."""
+        return {name: value for name, value in write(self).items() if name not in _UNWRITTEN or value}
 
     def object(self, name: str) -> PlanObject:
         """The object of that name; KeyError naming the known ones."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Collection
 from typing import Any, get_args
 
 from pydantic import BaseModel
@@ -68,11 +69,18 @@ def roles() -> str:
     return "|".join(f'"{role}"' for role in get_args(Role))
 
 
-def constructions() -> str:
-    """Every construction: what it is, its fields, those of its parts, an example; a line each."""
+def constructions(kinds: Collection[str], without: bool = False) -> str:
+    """Constructions of some kinds: what each is, its fields, those of its parts, an example; a line each.
+
+    Args:
+        kinds: Their names.
+        without: All kinds but these.
+    """
     lines = []
     for model in (*get_args(Built), External):
         kind = str(model.model_fields["kind"].default)
+        if (kind in kinds) == without:
+            continue
         parts = "".join(f"; {_named(part)}: {_fields(part)}" for part in _parts(model))
         example = json.dumps(EXAMPLES[kind], separators=(",", ":"))
         says = re.sub(r" \(docs/\S+\)", "", str(model.__doc__).splitlines()[0])

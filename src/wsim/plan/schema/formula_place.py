@@ -30,7 +30,7 @@ class StaysWithin(Predicate):
 
 
 class ContainedIn(Predicate):
-    """All of the object is between the walls, above the floor and below the rim of a container."""
+    """All of the object is between walls, above the floor and below the rim of a container: a tank, a bucket."""
 
     op: Literal["contained_in"] = "contained_in"
     alone: ClassVar[Literal["finally"]] = "finally"

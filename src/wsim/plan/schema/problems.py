@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, get_args
 
 from wsim.limits import MAX_DURATION, MAX_FRAME_RATE, MAX_FRICTION, bad_stops, bad_time_step
+from wsim.plan.schema.clauses import clause_problems
+from wsim.plan.schema.cord_problems import cord_problems
 from wsim.plan.schema.draft import KindOfTwo
 from wsim.plan.schema.land import land_problems
 from wsim.plan.schema.supports import support_problems
@@ -29,11 +31,13 @@ def problems(plan: Draft) -> list[str]:
         *support_problems(plan),
         *_groups(plan),
         *_joints(plan),
+        *cord_problems(plan),
         *_contacts(plan),
         *_actuation(plan),
         *_by_time(plan),
         *land_problems(plan),
         *_others(plan),
+        *clause_problems(plan),
     ]
 
 
@@ -61,6 +65,7 @@ def _names(plan: Draft) -> Iterator[str]:
         "cameras": [camera.name for camera in plan.cameras],
         "sensors": [sensor.name for sensor in plan.sensors],
         "joints": [joint.name for joint in plan.joints],
+        "cords": [cord.name for cord in plan.cords],
     }
     taken: dict[str, str] = {}
     for kind, names in named.items():

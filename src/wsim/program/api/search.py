@@ -12,6 +12,8 @@ from wsim.program.api.vocabulary import vocabulary
 
 _NAMED = 0.25  # a name made of the words asked for
 _EXACT = 60.0  # a name that is asked for as it is written
+_TAKES = 2 * _EXACT  # one that a call of the scene takes: it is what sets it
+_CALLS = "wsim.scene.Scene."
 # What a program reaches for first. A word's rarity says nothing of that.
 _FIRST = {"wsim": 1.6, "schema": 0.95, "pxr": 0.9, "numpy": 0.95, "python": 0.8, "newton": 0.6, "warp": 0.6}
 _KIND = {"module": 0.5, "attribute": 0.75, "property": 0.85, "schema attribute": 0.9}
@@ -31,8 +33,9 @@ class Searcher:
     def __init__(self, store: Store) -> None:
         self._store = store
         self._names = store.names()
+        self._takers = _takers(store, self._names)
         self._first = [
-            _FIRST.get(source, 0.8) * _KIND.get(kind, 1.0) * (0.4 if _inner(name) else 1.0)
+            _FIRST.get(source, 0.8) * _KIND.get(kind, 1.0) * (0.4 if _inner(name) or self._told(name, kind) else 1.0)
             for name, (source, kind) in zip(self._names, store.sorts(), strict=True)
         ]
 
@@ -50,6 +53,9 @@ class Searcher:
                 found[i] = found.get(i, 0.0) + score * self._first[i]
         for i in {i for name in _names(text) for i in self._store.ids(name)}:
             found[i] = found.get(i, 0.0) + _EXACT * self._first[i] / (1 + self._names[i].count("."))
+        for name in _names(text):
+            for i, arguments in self._takers.get(name, {}).items():  # the less a call takes besides, the likelier it is
+                found[i] = found.get(i, 0.0) + _TAKES * self._first[i] / arguments
         said = set(vocabulary().stems(text))
         for i in _best(found, 8 * limit):
             parts = set(vocabulary().stems(self._names[i].rpartition(".")[2]))
@@ -57,6 +63,20 @@ class Searcher:
                 found[i] *= 1.0 + _NAMED * len(parts & said) / len(parts)
         best = _best(found, limit)
         return [Hit(entry, found[i]) for entry, i in zip(self._store.entries(best), best, strict=True)]
+
+    def _told(self, name: str, kind: str) -> bool:
+        """Whether a field only tells what a call of the scene was given: that call is what sets it."""
+        return kind == "attribute" and name.startswith("wsim.scene.") and name.rpartition(".")[2] in self._takers
+
+
+def _takers(store: Store, names: list[str]) -> dict[str, dict[int, int]]:
+    """The calls of the scene that take an argument of a name, and how many arguments each has."""
+    calls = [i for i, name in enumerate(names) if name.startswith(_CALLS)]
+    found: dict[str, dict[int, int]] = {}
+    for i, entry in zip(calls, store.entries(calls), strict=True):
+        for parameter in entry.parameters:
+            found.setdefault(parameter.name, {})[i] = len(entry.parameters)
+    return found
 
 
 def _inner(name: str) -> bool:

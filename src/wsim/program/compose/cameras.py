@@ -20,4 +20,5 @@ def _arguments(camera: CameraPlan) -> list[str]:
     if camera.eye is None or camera.target is None:
         raise UserError(f"camera {camera.name} has no eye or no target; lay the plan out before composing it")
     follows = [f'follows="{camera.follows}"'] if camera.follows is not None else []
-    return [f'"{camera.name}"', f"eye={tuple_of(camera.eye)}", f"target={tuple_of(camera.target)}", *follows]
+    fixed = ["fixed=True"] if camera.words else []
+    return [f'"{camera.name}"', f"eye={tuple_of(camera.eye)}", f"target={tuple_of(camera.target)}", *follows, *fixed]

@@ -16,6 +16,7 @@ def statements(draft: Draft) -> list[str]:
     lines: list[str] = []
     containers = {fluids.container(item) for item in plan.objects if item.primitive == "fluid"}
     jointed = {name for joint in plan.joints for name in (joint.child, joint.parent)}
+    jointed |= {name for cord in plan.cords for name in (cord.a, cord.b, *(each.object for each in cord.around or ()))}
     for group in loops.groups(_ordered(plan.objects), jointed):
         if len(group) > 1:
             lines += loops.loop(draft, group)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from wsim.defaults import FRAME_RATE
 from wsim.plan.schema import Plan, SimulationPlan
-from wsim.program.compose import cameras, contacts, joints, materials, objects, robots, vehicles, words
+from wsim.program.compose import cameras, contacts, cords, joints, materials, objects, robots, vehicles, words
 from wsim.program.compose.draft import Draft
 from wsim.program.source import call, number
 
@@ -29,6 +29,7 @@ def compose(plan: Plan) -> str:
         *materials.statements(draft),
         *objects.statements(draft),
         *joints.statements(draft),
+        *cords.statements(draft),
         *robots.policies(draft),
         *robots.motions(draft),
         *vehicles.set_off(draft),

@@ -23,6 +23,7 @@ def check(reader: Reader, plan: Plan) -> None:
     node = getattr(build, "node", reader.tree)
     wanted = {prim: "object" for item in plan.objects for prim in item.prims}
     wanted |= {joint.name: "joint" for joint in plan.joints} | {camera.name: "camera" for camera in plan.cameras}
+    wanted |= {cord.name: cord.kind for cord in plan.cords if cord.kind != "cable"}
     if reader.whole and not world.open:
         for name, what in wanted.items():
             if name not in made:
@@ -34,6 +35,8 @@ def check(reader: Reader, plan: Plan) -> None:
                 )
     besides = {name: "box" for name in world.raw if name not in world.names}
     for name, method in (world.names | besides).items():
+        if any(cord.owns(name) for cord in plan.cords):
+            continue
         if method in (*OBJECTS, *JOINTS) and name not in wanted:
             place = (world.raw | world.places).get(name, node)
             what = "joint" if method in JOINTS else "object"

@@ -1,0 +1,72 @@
+"""The short form of a plan, as a model or a person writes it: flat objects, objectives as sentences."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from wsim.errors import UserError
+from wsim.judge.language import parse
+from wsim.plan.feasible.plan import refuse_impossible
+from wsim.plan.schema import Plan
+from wsim.plan.store import made, parsed
+
+
+def load_given(path: Path) -> Plan:
+    """Read a plan that a person gives, in the full form or the short one; validated, laid out, and possible.
+
+    Raises:
+        UserError: The file cannot be read, is no plan, cannot be laid out, or what it says cannot come true.
+    """
+    data = parsed(path)
+    plan = made(written_out(data, f"{path}: ") if isinstance(data, dict) else data, path)
+    refuse_impossible(plan, path)
+    return plan
+
+
+def written_out(answer: dict[str, Any], where: str = "") -> dict[str, Any]:
+    """The full form of a plan in either form.
+
+    Args:
+        answer: The plan as JSON; it is left as it is.
+        where: Put before the path in messages.
+
+    Raises:
+        UserError: A sentence is none of the language.
+    """
+    data = dict(answer)
+    if isinstance(data.get("objects"), list):
+        data["objects"] = [_object(item) if isinstance(item, dict) else item for item in data["objects"]]
+    if isinstance(data.get("objectives"), list):
+        data["objectives"] = [
+            _objective(item, f"{where}objectives.{number}.sentence") if isinstance(item, dict) else item
+            for number, item in enumerate(data["objectives"])
+        ]
+    return data
+
+
+def _object(item: dict[str, Any]) -> dict[str, Any]:
+    """An object whose `primitive` and `size`, or `asset`, and `relations` may stand at its top."""
+    full = dict(item)
+    if "construction" not in full:
+        if "asset" in full:
+            full["construction"] = {"kind": "asset", "asset": full.pop("asset")}
+        elif "primitive" in full:
+            full["construction"] = {"primitive": full.pop("primitive"), "size": full.pop("size", [])}
+    if isinstance(full.get("construction"), dict):
+        full["construction"] = {"kind": "proxy", **full["construction"]}
+    if "relations" in full and "topology" not in full:
+        full["topology"] = {"relation": full.pop("relations")}
+    if isinstance(full.get("position"), list) and "pose" not in full:
+        full["pose"] = {"position": full.pop("position"), "rotation_deg": full.pop("rotation_deg", [0, 0, 0])}
+    return full
+
+
+def _objective(item: dict[str, Any], where: str) -> dict[str, Any]:
+    """An objective whose formula may be its sentence."""
+    if item.get("kind") != "formula" or "formula" in item:
+        return item
+    try:
+        return item | {"formula": parse(str(item.get("sentence", ""))).model_dump(mode="json", exclude_none=True)}
+    except ValueError as error:
+        raise UserError(f"{where}: {error}") from error

@@ -1,0 +1,191 @@
+"""Which demands of a prompt a plan answers for by its clauses, which it leaves out, and which it says it cannot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from wsim.plan.asked.demands import REQUIRED, Demand, demands, tokens
+from wsim.plan.asked.shown import is_blow_shown
+from wsim.plan.asked.stated import asks, states
+from wsim.plan.asked.vocabulary import CAUSES
+
+if TYPE_CHECKING:
+    from wsim.plan.schema import Clause, Objective, Plan
+
+BLOW = "it is a blow, and no objective that is named for it asks for one: collides_with, touches"
+STARTS = ("velocity", "spin", "surface_velocity", "drive", "actuation")  # what sets a thing going
+
+
+@dataclass(frozen=True)
+class Gap:
+    """A demand that nothing answers for.
+
+    Attributes:
+        demand: What the prompt asks for.
+        why: What is missing, or the plan's own reason.
+        said: Whether the plan itself says that nothing answers for it.
+    """
+
+    demand: Demand
+    why: str
+    said: bool = False
+
+    @property
+    def line(self) -> str:
+        """For people."""
+        return f"{self.demand.quoted}: {self.why}"
+
+
+def gaps(plan: Plan) -> list[Gap]:
+    """Every demand of the prompt that no clause of the plan answers for, in the prompt's order.
+
+    A plan without clauses was written by hand, or by an older planner: nothing is demanded of it.
+    """
+    if not plan.clauses:
+        return []
+    placed = spans(plan)
+    found = []
+    for demand in demands(plan.prompt):
+        gap = _gap(demand, [clause for clause, where in placed if _within(demand, where)], plan)
+        if gap is not None and (demand.kind in REQUIRED or demand.kind == "manner"):
+            found.append(gap)
+    return found
+
+
+def missing(plan: Plan) -> list[Gap]:
+    """What happens, is so or is a number in the prompt, and the plan passes over without a word."""
+    return [gap for gap in gaps(plan) if gap.demand.kind in REQUIRED and not gap.said]
+
+
+def not_checked(plan: Plan) -> list[str]:
+    """A line for each demand that no run of the plan will show, and for each clause that the plan says so of."""
+    found = gaps(plan)
+    told = {gap.why for gap in found if gap.said}
+    lines = [gap.line for gap in found]
+    return lines + [f"'{c.words}': {c.unchecked}" for c in plan.clauses if c.unchecked and c.unchecked not in told]
+
+
+@dataclass(frozen=True)
+class Told:
+    """What a verdict on a world of a plan has to say of the prompt.
+
+    Attributes:
+        unasked: Why an accepted world would not be what was asked for; empty where nothing speaks against it.
+        not_checked: A line for each demand that nothing shows.
+        stands_in_for: What cannot be simulated, and this world is in place of.
+    """
+
+    unasked: str = ""
+    not_checked: tuple[str, ...] = ()
+    stands_in_for: str = ""
+
+
+def told(plan: Plan | None) -> Told:
+    """What a verdict on a world of a plan has to say of the prompt; nothing without a plan."""
+    if plan is None:
+        return Told()
+    return Told(unasked(plan), tuple(not_checked(plan)), plan.stands_in_for or "")
+
+
+def unasked(plan: Plan) -> str:
+    """Why an accepted world of this plan would not be what was asked for; empty where nothing speaks against it."""
+    silent = missing(plan)
+    if silent:
+        return f"nothing asks for {_listed(silent)}"
+    open_ = gaps(plan)
+    happens = [each for each in demands(plan.prompt) if each.kind in ("verb", "beyond")]
+    if plan.stands_in_for is None and happens and {gap.demand for gap in open_} >= set(happens):
+        return f"nothing asks for what happens in it, {_listed([g for g in open_ if g.demand in happens])}"
+    return ""
+
+
+def _listed(found: Sequence[Gap]) -> str:
+    return ", ".join(dict.fromkeys(gap.demand.quoted for gap in found))
+
+
+def spans(plan: Plan) -> list[tuple[Clause, set[int]]]:
+    """Each clause with the numbers of the prompt's tokens that are its words; none where they are not in the prompt."""
+    said = _words(plan.prompt)
+    placed, used = [], dict[tuple[str, ...], int]()
+    for clause in plan.clauses:
+        words = _words(clause.words)
+        start = _find(said, words, used.get(words, 0))
+        if start < 0:
+            start = _find(said, words, 0)
+        placed.append((clause, set(range(start, start + len(words))) if start >= 0 else set()))
+        used[words] = start + 1
+    return placed
+
+
+@lru_cache(maxsize=256)
+def _words(text: str) -> tuple[str, ...]:
+    return tuple(token.text for token in tokens(text) if not token.stops)
+
+
+def _find(said: tuple[str, ...], words: tuple[str, ...], begin: int) -> int:
+    ends = range(begin, len(said) - len(words) + 1)
+    return next((k for k in ends if words and said[k : k + len(words)] == words), -1)
+
+
+def _within(demand: Demand, where: set[int]) -> bool:
+    return set(range(demand.first, demand.last + 1)) <= where
+
+
+def _gap(demand: Demand, clauses: Sequence[Clause], plan: Plan) -> Gap | None:
+    """What is missing of a demand, given the clauses whose words hold it."""
+    tied = [clause for clause in clauses if clause.by]
+    reasons = [clause.unchecked for clause in clauses if clause.unchecked]
+    if demand.kind == "beyond":  # whatever it is tied to shows something else
+        if plan.stands_in_for is not None or reasons:
+            return Gap(demand, next(iter(reasons), "the world stands in for it"), said=True)
+        return Gap(demand, f"wsim has rigid bodies and water, and nothing in it can {demand.base}")
+    if demand.kind == "manner":
+        alone = [clause for clause in tied if not _more_than(demand, clause)]
+        return None if alone else Gap(demand, next(iter(reasons), "nothing measures it"), said=bool(reasons))
+    if any(_shows(clause, demand, plan) for clause in tied):
+        return None if is_blow_shown(demand.base, _asked(tied, plan)) else Gap(demand, BLOW)
+    if reasons:
+        return Gap(demand, reasons[0], said=True)
+    if not clauses:
+        return Gap(demand, "no clause has it")
+    return Gap(demand, _lacks(demand))
+
+
+def _asked(clauses: Sequence[Clause], plan: Plan) -> list[Objective]:
+    return [plan.objectives[number] for clause in clauses for number in clause.objectives]
+
+
+def _more_than(manner: Demand, clause: Clause) -> bool:
+    """Whether a clause speaks of more than a manner: then what answers for it need not show that."""
+    return any(each.kind in REQUIRED for each in demands(clause.words) if each.text != manner.text)
+
+
+def _shows(clause: Clause, demand: Demand, plan: Plan) -> bool:
+    if demand.kind == "number" and not demand.unit:
+        return _counted(clause, demand)
+    if demand.kind == "state":
+        return True
+    if demand.kind == "number":
+        asked = any(asks(plan.objectives[number], demand) for number in clause.objectives)
+        return asked or any(states(plan, name, field, demand) for name, field in clause.things)
+    if clause.objectives:
+        return True
+    return demand.base in CAUSES and any(field in STARTS for _, field in clause.things)
+
+
+def _counted(clause: Clause, demand: Demand) -> bool:
+    """Of a count the things themselves answer, as many as it says; one may be many (a scatter, a robot's legs)."""
+    whole = [name for name, field in clause.things if not field]
+    several = len(whole) > 1 and len(whole) == len(clause.by or [])
+    return not several or demand.value is None or len(whole) >= demand.value
+
+
+def _lacks(demand: Demand) -> str:
+    if demand.kind == "number" and not demand.unit:
+        return "fewer things are named for it"
+    if demand.kind == "number":
+        return "no objective that is named for it has this value, nor a property, such as puck.velocity"
+    return "it happens, and no objective is named for it"

@@ -1,0 +1,133 @@
+"""Whether a property of the plan has the value that the prompt states."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from wsim.plan.layout.boxes import rotation
+from wsim.plan.schema.clause import OF_CORDS, WHOLE
+
+if TYPE_CHECKING:
+    from wsim.plan.asked.demands import Demand
+    from wsim.plan.schema import Joint, Objective, Plan, PlanObject
+
+ROUNDING = 0.05  # share: "about half a metre" is planned as 0.48 m
+FIELDS = {  # by unit: where a number of it may stand in an object or a joint that is named without a property
+    "m": ("size", "limits", "anchor", "length"), "kg": ("mass",), "kg/m^3": ("density",),
+    "m/s": ("velocity", "surface_velocity", "drive", "actuation"),
+    "deg/s": ("spin", "drive"), "deg": ("limits", "drive", "direction"), "N": ("drive",), "s": ("duration",),
+}  # fmt: skip
+OPEN = ("place", "level", "actuation")  # a stated distance may be the difference of two places, or one of many
+_POINTS = ("target", "center", "path", "at")  # of formulas: places in the world
+
+
+def states(plan: Plan, name: str, field: str, demand: Demand) -> bool:
+    """Whether a property has a number; without one, any that may. Places are differences, and are not compared."""
+    if field in OPEN:
+        return True
+    fields = (field,) if field else FIELDS.get(demand.unit, ())
+    return any(close(value, demand) for each in fields for value in values(plan, name, each))
+
+
+def asks(objective: Objective, demand: Demand) -> bool:
+    """Whether an objective has a number, in a range, or a place that may come of it."""
+    given = {objective.value, objective.tolerance} - {None}
+    if any(close(float(value), demand) for value in given if value is not None):
+        return True
+    for node in objective.formula.walk() if objective.formula is not None else ():
+        fields = dict(node)
+        if demand.unit in ("m", "deg") and any(isinstance(fields.get(name), (tuple, float)) for name in _POINTS):
+            return True
+        low, high = fields.get("low"), fields.get("high")
+        if isinstance(low, float) and isinstance(high, float) and _between(low, high, demand):
+            return True
+        if any(close(value, demand) for value in _numbers(fields.values())):
+            return True
+    return False
+
+
+def _between(low: float, high: float, demand: Demand) -> bool:
+    assert demand.value is not None
+    slack = ROUNDING * max(abs(low), abs(high))
+    return any(low - slack <= value <= high + slack for value in (demand.value, -demand.value))
+
+
+def _numbers(fields: Iterable[object]) -> Iterator[float]:
+    for value in fields:
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            yield float(value)
+        elif isinstance(value, tuple):
+            yield from _numbers(value)
+
+
+def close(value: float, demand: Demand) -> bool:
+    """Whether a plan's number is a stated one, whichever way it points."""
+    assert demand.value is not None
+    return math.isclose(abs(value), abs(demand.value), rel_tol=ROUNDING, abs_tol=1e-9)
+
+
+def values(plan: Plan, name: str, field: str) -> Iterator[float]:
+    """The numbers of a property, SI, angles in degrees; of a vector also its length, of a radius the diameter too."""
+    if name == WHOLE:
+        yield plan.simulation.duration
+        return
+    for item in plan.objects:
+        if item.name == name:
+            yield from _of_object(plan, item, field)
+    for joint in plan.joints:
+        if joint.name == name:
+            yield from _of_joint(joint, field)
+    for cord in plan.cords:
+        if cord.name == name and field in OF_CORDS:
+            yield from (value for value in (getattr(cord, field),) if value is not None)
+
+
+def _of_object(plan: Plan, item: PlanObject, field: str) -> Iterator[float]:
+    vectors = {
+        "velocity": item.velocity, "spin": item.angular_velocity_deg, "surface_velocity": item.surface_velocity,
+    }  # fmt: skip
+    if field in vectors:
+        vector = vectors[field] or (0.0, 0.0, 0.0)
+        yield from (*vector, math.hypot(*vector), math.hypot(*vector[:2]))
+    elif field == "actuation":
+        yield from (each.speed for each in item.registration.actuation if each.speed is not None)
+    elif field == "direction" and any(item.velocity):
+        x, y, z = item.velocity
+        yield from (math.degrees(math.atan2(z, math.hypot(x, y))), math.degrees(math.atan2(y, x)))
+    elif field == "size":
+        yield from (*item.size, *(2.0 * edge for edge in item.size), *(item.dimensions or ()))
+    elif field in ("mass", "density"):
+        yield from (value for value in (getattr(item, field),) if value is not None)
+    elif field in ("friction", "restitution", "rolling"):
+        own = [getattr(item.material, field)] if item.material is not None else []
+        pairs = [getattr(each, field) for each in plan.contacts if item.name in (each.object, each.ref)]
+        yield from (value for value in (*own, *pairs) if value is not None)
+    elif field == "place":
+        yield from (value for row in item.relations for value in (row.value, row.gap) if value is not None)
+        if item.pose is not None:
+            yield from (*item.pose.position, *item.pose.rotation_deg)
+            yield from _distances(plan, item)
+
+
+def _distances(plan: Plan, item: PlanObject) -> Iterator[float]:
+    """From its centre to those of others, and to the anchors of joints [m]."""
+    assert item.pose is not None
+    poses = {each.name: each.pose for each in plan.objects if each.pose is not None}
+    yield from (math.dist(item.pose.position, pose.position) for name, pose in poses.items() if name != item.name)
+    for joint in plan.joints:
+        pose, own = poses.get(joint.child), joint.anchor or (0.0, 0.0, 0.0)
+        if pose is not None:
+            turn = rotation(pose.rotation_deg)
+            place = [pose.position[i] + sum(turn[i][k] * own[k] for k in range(3)) for i in range(3)]
+            yield math.dist(item.pose.position, place)
+
+
+def _of_joint(joint: Joint, field: str) -> Iterator[float]:
+    if field == "anchor" and joint.anchor is not None:
+        yield math.hypot(*joint.anchor)
+    elif field == "limits":
+        yield from joint.limits or ()
+    elif field == "drive" and joint.drive is not None:
+        yield from (joint.drive.velocity, joint.drive.position, joint.drive.max_force or 0.0)

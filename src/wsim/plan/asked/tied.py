@@ -1,0 +1,88 @@
+"""A plan whose clauses are found from its prompt's words: for planners that know no clauses of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from wsim.plan.asked.demands import REQUIRED, Demand, demands, tokens
+from wsim.plan.asked.shown import SHOWN_BY, names_of
+from wsim.plan.asked.stated import FIELDS, asks, close, values
+from wsim.plan.asked.vocabulary import CAUSES
+from wsim.plan.schema.clause import OF_JOINTS, WHOLE, Clause
+
+if TYPE_CHECKING:
+    from wsim.plan.schema import Plan, PlanObject
+
+UNASKED = "no objective of the plan asks for it"
+UNFOUND = "no number that the plan states is this one"
+_WITHOUT_UNIT = ("friction", "restitution", "rolling")
+
+
+def tied(plan: Plan) -> Plan:
+    """The plan with a clause for each demand of its prompt: what happens, is so, or is a number.
+
+    A verb is tied to the objectives that can show it, a number to the objective or property that has it; what neither
+    is found for is said to be unchecked.
+    """
+    found = [_clause(plan, demand) for demand in demands(plan.prompt) if demand.kind in REQUIRED]
+    return plan.model_copy(update={"clauses": found})
+
+
+def _clause(plan: Plan, demand: Demand) -> Clause:
+    by: list[int | str] = [] if demand.kind == "beyond" else list(_evidence(plan, demand))
+    if by:
+        return Clause(words=demand.text, by=by)
+    return Clause(words=demand.text, unchecked=UNFOUND if demand.kind == "number" else UNASKED)
+
+
+def _evidence(plan: Plan, demand: Demand) -> Iterator[int | str]:
+    if demand.kind == "number":
+        yield from _of_number(plan, demand)
+        return
+    shown = SHOWN_BY.get(demand.base)
+    numbers = [k for k, each in enumerate(plan.objectives) if shown is None or names_of(each) & shown]
+    yield from numbers
+    if not numbers and demand.base in CAUSES:
+        for item in plan.objects:
+            fields = {"velocity": any(item.velocity), "surface_velocity": bool(item.surface_velocity)}
+            fields |= {"spin": bool(item.angular_velocity_deg), "actuation": bool(item.registration.actuation)}
+            yield from (f"{item.name}.{field}" for field, has in fields.items() if has)
+        yield from (f"{joint.name}.drive" for joint in plan.joints if joint.drive is not None)
+    elif not numbers and demand.kind == "state":
+        yield from (item.name for item in plan.objects if item.primitive != "ground")
+
+
+def _of_number(plan: Plan, demand: Demand) -> Iterator[int | str]:
+    placed = ("place",) if demand.unit in ("m", "deg") else ()
+    fields = (*FIELDS.get(demand.unit, ()), *placed) if demand.unit else _WITHOUT_UNIT
+    for item in plan.objects:
+        field = next((f for f in fields if any(close(value, demand) for value in values(plan, item.name, f))), None)
+        if field is not None:
+            yield f"{item.name}.{field}"
+    for joint in plan.joints:
+        for field in OF_JOINTS[1:]:
+            if any(close(value, demand) for value in values(plan, joint.name, field)):
+                yield f"{joint.name}.{field}"
+    if demand.unit:
+        yield from (k for k, each in enumerate(plan.objectives) if asks(each, demand))
+    else:
+        named = [item.name for item in plan.objects if _counted(item, demand)]
+        yield from named or _as_many(plan, demand)
+    if demand.unit == "s" and close(plan.simulation.duration, demand):
+        yield f"{WHOLE}.duration"
+
+
+def _counted(item: PlanObject, demand: Demand) -> bool:
+    words = [token.text for token in tokens(item.words)]
+    return any(token.text in words for token in tokens(demand.text))
+
+
+def _as_many(plan: Plan, demand: Demand) -> list[str]:
+    """Things of one kind, numbered, that are as many."""
+    kinds: dict[str, list[str]] = {}
+    for item in plan.objects:
+        stem, _, number = item.name.rpartition("_")
+        if number.isdigit():
+            kinds.setdefault(stem, []).append(item.name)
+    return next((names for names in kinds.values() if len(names) == demand.value), [])

@@ -1,0 +1,186 @@
+"""The English of prompts about worlds: verbs by what can show them, units, numbers in words, words of manner.
+
+Closed lists: a verb that is in none of them asks for nothing here. They are of physics, not of any scene.
+"""
+
+from __future__ import annotations
+
+import math
+
+
+def _set(words: str) -> frozenset[str]:
+    return frozenset(words.split())
+
+
+# What happens: an objective must ask for it.
+MOTIONS = _set(
+    """
+    accelerate arc arrive ascend balance barrel bob bounce brake bump capsize career careen carry catch chase
+    circle climb coast collapse collide come crash creep cross crush dangle dart decelerate deflect descend dip
+    dislodge dive drag drain drift drive drop empty enter escape exit fall fill flap flip float flow fly follow
+    funnel gallop glide go grab grasp halt haul hit hop hover hurtle impact jerk jolt jump kick knock land lap leap
+    leave lift lower lurch march meet migrate miss move nudge orbit oscillate overflow overtake overturn pass
+    patrol pick pitch pivot plop plow plough plummet plunge pour precess pull push raise ram reach rebound recoil
+    reel return reverse revolve ricochet ride rise rock roll rotate run rush sail scatter settle shake shift shove
+    sink skate skid skim skip slam slap slide slip slosh slow smash snag soar speed spill spin spiral splash spread
+    spurt squirt stack stagger steer stop strike stroll sway sweep swerve swim swing swirl swivel tap tilt tip
+    topple toss touch tow travel traverse trickle trip trot tumble turn twirl twist veer vibrate waddle walk whirl
+    wobble yaw yield
+    """
+)
+# What sets a thing going: its start may show it as well, a velocity, a drive.
+CAUSES = _set(
+    """
+    crank dispense drive drop eject fire fling flick hurl inject kick launch lob nudge propel pull push release
+    roll run rotate send shoot shove slide spin start swing throw toss turn
+    """
+)
+# How things stand to each other: any evidence will do, the objects and joints themselves included.
+STATES = _set(
+    """
+    align anchor arrange attach bear bolt bridge build chain clamp clip connect contain cover dangle embed enclose
+    face fasten fit fix fold glue guide hang hinge hold hook join keep lay lean lie line link load lock mount park
+    perch pile pin place position prop put reside rest screw seal separate sit span stand stay stick string
+    submerge support surround suspend tether tie wait weigh weld wrap
+    """
+)
+# What nothing in wsim does: bodies are rigid, water is water, and there is neither heat nor field.
+BEYOND = _set(
+    """
+    absorb attract bake bend blaze bleed boil break buckle burn burst char chip chop compress condense conduct cook
+    cool corrode crack crease crumble crumple curl cut deflate deform dent dissolve drape electrify erode evaporate
+    expand explode fizz flex flutter fracture fray freeze fuse glow heat ignite illuminate implode inflate
+    magnetise magnetize melt peel pop puncture reflect refract repel rip rupture rust scorch shatter shine shred
+    shrink slice smoke smoulder snap solidify splinter split squash squeeze stretch tear thaw unravel vaporise
+    vaporize warp wilt wrinkle
+    """
+)
+IRREGULAR = {
+    "ran": "run", "fell": "fall", "fallen": "fall", "slid": "slide", "swung": "swing", "spun": "spin",
+    "struck": "strike", "threw": "throw", "thrown": "throw", "shot": "shoot", "flew": "fly", "flown": "fly",
+    "sank": "sink", "sunk": "sink", "rose": "rise", "risen": "rise", "drove": "drive", "driven": "drive",
+    "rode": "ride", "ridden": "ride", "went": "go", "gone": "go", "came": "come", "met": "meet", "swam": "swim",
+    "swum": "swim", "swept": "sweep", "flung": "fling", "caught": "catch", "left": "leave", "leapt": "leap",
+    "dove": "dive", "sped": "speed", "crept": "creep", "sent": "send", "broke": "break", "broken": "break",
+    "bent": "bend", "burnt": "burn", "tore": "tear", "torn": "tear", "froze": "freeze", "frozen": "freeze",
+    "shone": "shine", "stood": "stand", "sat": "sit", "lay": "lie", "laid": "lay", "hung": "hang", "held": "hold",
+    "built": "build", "kept": "keep", "stuck": "stick", "tied": "tie", "lying": "lie", "tying": "tie",
+    "lies": "lie", "ties": "tie", "shook": "shake", "shaken": "shake", "bore": "bear", "borne": "bear",
+    "leant": "lean", "spilt": "spill", "drew": "draw",
+}  # fmt: skip
+SAME_PAST = _set("hit put cut burst spread split")  # their past is their base
+
+DETERMINERS = _set("a an the this that these those its his her their our my your each every some any no both")
+# After these a base form is a verb: "lets it fall", "to roll", "will tip".
+BEFORE_BASE = _set("to will can must should may would could shall let lets make makes and then it they which that who")
+PREPOSITIONS = _set(
+    """
+    above across against along around at behind below beneath beside between beyond by down from in inside into
+    near of off on onto out over past through towards toward under underneath until up upon with within without
+    """
+)
+RELATIONS = PREPOSITIONS - {"of", "by", "with", "at", "without", "until"}
+
+# Manner without a number: nothing measures it unless a clause of its own says what does.
+MANNERS = _set("gently softly slowly quickly rapidly suddenly smoothly violently carefully lightly barely hard fast")
+NO_MANNER = _set(
+    """
+    assembly belly bully completely directly evenly exactly family finally fly freely fully horizontally hourly
+    initially jelly likely lily mutually nearly only partially perfectly previously rally rapidly reply roughly
+    simultaneously supply symmetrically trolley uniformly vertically approximately entirely tightly loosely equally
+    diagonally radially axially continuously repeatedly alternately immediately early
+    """
+)
+
+_ONES = """zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen
+seventeen eighteen nineteen"""
+_TENS = "twenty thirty forty fifty sixty seventy eighty ninety"
+WORDS: dict[str, float] = {word: float(k) for k, word in enumerate(str.split(_ONES))}
+WORDS |= {word: 10.0 * k for k, word in enumerate(str.split(_TENS), start=2)}
+SCALES = {"hundred": 100.0, "thousand": 1000.0, "dozen": 12.0}
+PARTS = {"half": 0.5, "quarter": 0.25, "halves": 0.5, "quarters": 0.25, "thirds": 1 / 3, "third": 1 / 3}
+
+_LENGTHS = {
+    1.0: "m metre metres meter meters", 0.01: "cm centimetre centimetres centimeter centimeters",
+    0.001: "mm millimetre millimetres millimeter millimeters", 1000.0: "km kilometre kilometres kilometer kilometers",
+    0.0254: "inch inches", 0.3048: "ft foot feet",
+}  # fmt: skip
+_TIMES = {
+    1.0: "s sec secs second seconds", 0.001: "ms millisecond milliseconds", 60.0: "min minute minutes",
+    3600.0: "h hour hours",
+}  # fmt: skip
+_OTHERS = {
+    "kg": {1.0: "kg kilogram kilograms kilo kilos", 0.001: "g gram grams", 1000.0: "tonne tonnes ton tons"},
+    "deg": {
+        1.0: "deg degree degrees °", 360.0: "revolution revolutions turn turns",
+        math.degrees(1.0): "rad radian radians",
+    },
+    "deg/s": {6.0: "rpm"},
+    "m/s": {1000 / 3600: "kmh kph", 1609.344 / 3600: "mph"},
+    "m^3": {0.001: "l litre litres liter liters"},
+    "N": {1.0: "n newton newtons", 1000.0: "kn"},
+    "Hz": {1.0: "hz hertz"},
+    "1": {0.01: "% percent"},
+}  # fmt: skip
+
+
+def _units() -> dict[tuple[str, ...], tuple[str, float]]:
+    """A unit's tokens, with its SI unit (angles in degrees) and how many of it one is."""
+    found: dict[tuple[str, ...], tuple[str, float]] = {}
+    for unit, sizes in ({"m": _LENGTHS, "s": _TIMES} | _OTHERS).items():
+        for size, words in sizes.items():
+            found |= {(word,): (unit, size) for word in words.split()}
+    plain = dict(found)
+    times = [(word, size) for size, words in _TIMES.items() for word in words.split()]
+    for said, (unit, size) in plain.items():
+        word = said[0]
+        if unit not in ("m", "deg"):
+            continue
+        for per, seconds in times:
+            for between in ("/", "per", "a", "each", "every"):
+                if between in ("/", "per") or len(per) > 3:
+                    found[(word, between, per)] = (f"{unit}/s", size / seconds)
+        if unit == "m" and size == 1.0:
+            for square in (("s", "^", "2"), ("s", "²"), ("s", "2"), ("second", "squared")):
+                for over in ("/", "per"):
+                    found[(word, over, *square)] = ("m/s^2", 1.0)
+    for cube in (("m", "^", "3"), ("m", "³"), ("m", "3"), ("cubic", "metre"), ("cubic", "meter")):
+        found[("kg", "/", *cube)] = found[("kg", "per", *cube)] = ("kg/m^3", 1.0)
+    return found
+
+
+UNITS = _units()
+LONGEST_UNIT = max(map(len, UNITS))
+SPELLED = _set("metre meter centimetre centimeter kilometre kilometer kilogram")  # "a metre above" is one
+
+
+def stem(word: str) -> str | None:
+    """The base form of a verb that is known; None of any other word."""
+    if word in IRREGULAR:
+        return IRREGULAR[word] if known(IRREGULAR[word]) else None
+    for base in _bases(word):
+        if known(base):
+            return base
+    return None
+
+
+def known(base: str) -> bool:
+    """Whether a base form is in one of the lists."""
+    return base in MOTIONS or base in CAUSES or base in STATES or base in BEYOND
+
+
+def _bases(word: str) -> list[str]:
+    """What a word may be a form of, by English spelling."""
+    found = [word]
+    for ending in ("ing", "ed", "es", "s"):
+        if not word.endswith(ending) or len(word) <= len(ending) + 1:
+            continue
+        root = word[: -len(ending)]
+        found.append(root)
+        if ending in ("ing", "ed"):
+            found.append(root + "e")
+            if len(root) > 2 and root[-1] == root[-2]:
+                found.append(root[:-1])
+        if ending in ("ed", "es") and root.endswith("i"):
+            found.append(root[:-1] + "y")
+    return found

@@ -1,0 +1,79 @@
+"""The objectives of a plan, with what each says of which objects."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from wsim.plan.schema.formula import Predicate
+
+if TYPE_CHECKING:
+    from wsim.plan.schema import Objective, Plan
+    from wsim.plan.schema.nodes import Node
+
+
+@dataclass(frozen=True)
+class Said:
+    """A predicate, or a plain kind of objective.
+
+    Attributes:
+        where: Its path in the plan.
+        name: The kind, or the predicate's name.
+        fields: Of the predicate; of a kind `object` and `ref`.
+        denied: It stands under a `not`.
+        throughout: It is to hold all the time, from the start on.
+    """
+
+    where: str
+    name: str
+    fields: dict[str, Any]
+    denied: bool = False
+    throughout: bool = False
+
+    @property
+    def object(self) -> str | None:
+        """What it is said of."""
+        return self.fields.get("object")
+
+    @property
+    def ref(self) -> str | None:
+        """Against what."""
+        return self.fields.get("ref")
+
+
+# Kinds and predicates that by themselves are of every moment.
+THROUGHOUT = ("stays_on", "stays_inside", "stays_within", "touches_only", "never_touches")
+
+
+def said(plan: Plan) -> list[Said]:
+    """All of them, in the plan's order."""
+    found: list[Said] = []
+    for number, objective in enumerate(plan.objectives):
+        where = f"objectives.{number}"
+        if objective.formula is None:
+            found.append(_kind(where, objective))
+        else:
+            alone = objective.formula if isinstance(objective.formula, Predicate) else None
+            found += list(_of(objective.formula, where, False, alone is not None and alone.alone == "always"))
+    return found
+
+
+def _kind(where: str, objective: Objective) -> Said:
+    fields = {"object": objective.object, "ref": objective.ref}
+    return Said(where, objective.kind, fields, throughout=objective.kind in THROUGHOUT)
+
+
+def _of(node: Node, where: str, denied: bool, throughout: bool) -> Iterator[Said]:
+    op = str(getattr(node, "op", ""))
+    if isinstance(node, Predicate):
+        fields = {name: getattr(node, name) for name in type(node).model_fields if name != "op"}
+        yield Said(f"{where}.formula", op, fields, denied, throughout)
+        return
+    if op in ("or", "then", "until", "eventually", "finally", "mean"):
+        throughout = False  # it need not hold at the start, or not at all
+    if op == "always":
+        window = getattr(node, "window", None)
+        throughout = window is None or window[0] == 0.0
+    for part in node.parts():
+        yield from _of(part, where, denied ^ (op == "not"), throughout)

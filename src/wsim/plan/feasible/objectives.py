@@ -1,0 +1,106 @@
+"""Objectives that contradict each other, what they are of, or the time that there is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from wsim.plan.feasible.asked import Said, said
+
+if TYPE_CHECKING:
+    from wsim.plan.schema import Plan, PlanObject
+    from wsim.plan.schema.nodes import Node
+
+_MOVES = (
+    "moves",
+    "topples",
+    "slides",
+    "rolls_down",
+    "rolls",
+    "swings",
+    "flies",
+    "tilts",
+    "tilts_to",
+    "floats",
+    "sinks",
+)
+_TIPPED = 45.0  # [deg]: as "topples" has it
+# Two things that cannot both be true of one object against one other: at the end, or ever.
+_EXCLUDE = (
+    ({"floats"}, {"submerged", "sinks"}),
+    ({"touches", "collides_with", "pushes", "rests_on", "stays_on", "bounces_to", "weighs_on"}, {"never_touches"}),
+    ({"collides_with", "touches"}, {"stops_before"}),
+)
+LATE = 1e-9  # [s]
+
+
+def objective_faults(plan: Plan) -> Iterator[str]:
+    """All of them."""
+    asked = said(plan)
+    items = {item.name: item for item in plan.objects}
+    yield from _windows(plan)
+    for each in asked:
+        yield from _fixed(each, items)
+    yield from _contradictions(asked)
+
+
+def _windows(plan: Plan) -> Iterator[str]:
+    """A window that begins after the end is empty, and one that ends there asks for what is not recorded."""
+    end = plan.simulation.duration
+    for number, objective in enumerate(plan.objectives):
+        if objective.formula is None:
+            continue
+        latest = _latest(objective.formula)
+        if latest > end + LATE:
+            yield (
+                f"objectives.{number}.formula: its windows reach to {latest:g} s, and the run ends at {end:g} s; "
+                f"shorten them, or give simulation.duration {latest:g}"
+            )
+
+
+def _latest(node: Node) -> float:
+    """Up to when a formula looks at least, from where it is asked [s]; inner windows count from outer ones' ends."""
+    own = 0.0
+    windows = getattr(node, "windows", None) or (getattr(node, "window", None),)
+    for window in windows:
+        if window is not None:
+            own = max(own, window[1] if window[1] is not None else window[0])
+    if getattr(node, "op", "") == "finally":
+        return max(getattr(node, "seconds", None) or 0.0, 0.0)
+    inner = max((_latest(part) for part in node.parts()), default=0.0)
+    return own + inner
+
+
+def _fixed(each: Said, items: dict[str, PlanObject]) -> Iterator[str]:
+    item = items.get(each.object or "")
+    if item is not None and item.state == "static" and each.name in _MOVES and not each.denied:
+        yield f'{each.where}: {each.name} of {item.name}, which is static and never moves; make it "dynamic"'
+
+
+def _contradictions(asked: Sequence[Said]) -> Iterator[str]:
+    """Two objectives of which only one can come true."""
+    for k, one in enumerate(asked):
+        for other in asked[k + 1 :]:
+            if one.object == other.object and one.object is not None and (why := _against(one, other)):
+                yield f"{one.where} and {other.where}: {why}; leave one of the two out"
+
+
+def _against(one: Said, other: Said) -> str:
+    for first, second in ((one, other), (other, one)):
+        if first.denied or second.denied:
+            continue
+        if first.name == "topples" and second.name == "upright" and second.throughout:
+            within = second.fields.get("within")
+            if within is None or within < _TIPPED:
+                return f"{one.object} cannot topple and stay upright"
+        same = _others(first) & _others(second)
+        for these, those in _EXCLUDE:
+            if first.name in these and second.name in those and same:
+                return f"{one.object} cannot do both, {first.name} and {second.name}, with {min(same)}"
+    return ""
+
+
+def _others(each: Said) -> set[str]:
+    """What it is said against."""
+    found = (each.ref, each.fields.get("fluid"))
+    return {name for name in found if name is not None}

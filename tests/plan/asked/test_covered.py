@@ -1,0 +1,128 @@
+"""Which of a prompt's words a plan answers for."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from tests.agents.flies import BALL, GROUND, MOVES, answer
+from wsim.agents.planner import read_plan
+from wsim.errors import UserError
+from wsim.plan.asked.covered import missing, not_checked, told, unasked
+from wsim.plan.schema import Plan
+
+PROMPT = "A ball is thrown gently at 1.5 m/s and flies half a metre."
+ALL = [
+    {"words": "thrown gently at 1.5 m/s", "by": ["ball.velocity"]},
+    {"words": "flies half a metre", "by": [0]},
+    {"words": "gently", "unchecked": "no number goes with it"},
+]
+
+
+def plan(clauses: list[dict[str, Any]], prompt: str = PROMPT, **more: Any) -> Plan:
+    return read_plan(answer(clauses=clauses, **more), prompt)
+
+
+def test_all_is_tied_and_what_is_not_measured_is_shown() -> None:
+    assert missing(plan(ALL)) == []
+    assert unasked(plan(ALL)) == ""
+    assert not_checked(plan(ALL)) == ["'gently': no number goes with it"]
+    assert not_checked(plan(ALL[:2])) == ["'gently': nothing measures it"]  # though it stands within a clause
+
+
+def test_a_manner_of_its_own_is_tied() -> None:
+    assert not_checked(plan([*ALL[:2], {"words": "gently", "by": [0]}])) == []
+
+
+@pytest.mark.parametrize(
+    ("change", "gap"),
+    [
+        ({"words": "thrown gently", "by": ["ball.velocity"]}, "'1.5 m/s': no clause has it"),
+        ({"words": "thrown gently at 1.5 m/s", "by": ["ball.mass"]}, "'thrown': it happens, and no objective"),
+        (
+            {"words": "thrown gently at 1.5 m/s", "by": [0]},
+            "'1.5 m/s': no objective that is named for it has this value",
+        ),
+    ],
+)
+def test_what_is_not_tied_keeps_a_world_from_acceptance(change: dict[str, Any], gap: str) -> None:
+    made = plan([change, *ALL[1:]])
+    assert gap in " ".join(each.line for each in missing(made))
+    assert unasked(made).startswith("nothing asks for '")
+
+
+def test_a_speed_that_the_plan_has_not_is_not_stated() -> None:
+    slow = {"words": "thrown gently at 1.5 m/s", "by": ["ball"]}
+    assert missing(plan([slow, ALL[1]])) != []  # a bare name sets nothing going
+    other = plan([ALL[0], ALL[1]], PROMPT.replace("1.5", "2.5"))
+    assert [gap.demand.text for gap in missing(other)] == ["thrown", "2.5 m/s"]  # the clause's words are not there
+    ((words, by),) = [("thrown gently at 2.5 m/s", ["ball.velocity"])]
+    other = plan([{"words": words, "by": by}, ALL[1]], PROMPT.replace("1.5", "2.5"))
+    assert [gap.demand.text for gap in missing(other)] == ["2.5 m/s"]
+
+
+def test_a_plan_without_clauses_is_asked_nothing() -> None:
+    assert told(plan([])) == told(None)
+
+
+def test_what_cannot_be_simulated_is_not_tied_by_what_can() -> None:
+    prompt = "A thrown ball flies half a metre and shatters."
+    made = plan([{"words": "flies half a metre and shatters", "by": [0]}], prompt)
+    assert unasked(made) == "nothing asks for 'shatters'"
+    instead = made.model_copy(update={"stands_in_for": "a ball that shatters"})
+    assert (unasked(instead), told(instead).stands_in_for) == ("", "a ball that shatters")
+    assert not_checked(instead) == ["'shatters': the world stands in for it"]
+
+
+def test_a_reason_for_everything_that_happens_is_no_answer() -> None:
+    made = plan([{"words": "thrown gently at 1.5 m/s and flies half a metre", "unchecked": "hard to say"}])
+    assert unasked(made) == "nothing asks for what happens in it, 'thrown', 'flies'"
+
+
+@pytest.mark.parametrize(
+    ("clause", "message"),
+    [
+        ({"words": "flies", "by": [1]}, r"clauses\.0\.by: no objective 1; the plan has 1, and they count from 0"),
+        ({"words": "flies", "by": ["bird"]}, r"clauses\.0\.by: no object, joint or cord 'bird'"),
+        ({"words": "flies", "by": ["ball.mood"]}, r"clauses\.0\.by: ball has no 'mood' that is checked; it has size"),
+        ({"words": "flies"}, r'give "by", the objectives and objects that show it, or "unchecked"'),
+        ({"words": "flies", "by": [0], "unchecked": "so"}, r'give "by"'),
+    ],
+)
+def test_a_clause_names_what_is_there(clause: dict[str, Any], message: str) -> None:
+    with pytest.raises(UserError, match=message):
+        plan([clause])
+
+
+def test_the_second_of_two_like_words_is_another_place() -> None:
+    prompt = "A thrown ball flies and flies."
+    first = {"words": "flies", "by": [0]}
+    assert [gap.demand.first for gap in missing(plan([first], prompt))] == [5]
+    assert missing(plan([first, first], prompt)) == []
+
+
+def test_a_count_is_answered_by_as_many_things() -> None:
+    prompt = "Three balls are thrown and fly half a metre."
+    balls = [{**BALL, "name": f"ball_{k}", "position": [0, k, 2]} for k in range(3)]
+    rest = [{"words": "fly half a metre", "by": [0]}, {"words": "thrown", "by": ["ball_0.velocity"]}]
+
+    def counted(*by: Any) -> list[str]:
+        objectives = [{**MOVES, "object": "ball_0"}]
+        clauses = [{"words": "Three balls", "by": list(by)}, *rest]
+        return [gap.line for gap in missing(plan(clauses, prompt, objects=[GROUND, *balls], objectives=objectives))]
+
+    assert counted("ball_0", "ball_1", "ball_2") == []
+    assert counted("ball_0", "ball_1") == ["'Three': fewer things are named for it"]
+    assert counted("ball_0") == []  # what is one thing of the plan may be many
+
+
+def test_a_blow_is_asked_for_as_such() -> None:
+    prompt = "A ball hits the ground."
+    words = [{"words": "hits", "by": [0]}]
+    assert [gap.line for gap in missing(plan(words, prompt))] == [
+        "'hits': it is a blow, and no objective that is named for it asks for one: collides_with, touches"
+    ]
+    for asked in ({"kind": "collides_with"}, {"kind": "rests_on"}):
+        objectives = [{**asked, "object": "ball", "ref": "ground"}]
+        assert missing(plan(words, prompt, objectives=objectives)) == []

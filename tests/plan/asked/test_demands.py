@@ -1,0 +1,91 @@
+"""What a prompt demands: verbs that are verbs, numbers with their units, and nothing else that looks like them."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from wsim.plan.asked.demands import demands, tokens
+
+
+def found(prompt: str, *kinds: str) -> list[str]:
+    return [each.text for each in demands(prompt) if each.kind in kinds]
+
+
+VERBS = {
+    "A puck slides across ice and hits a wall.": ["slides", "hits"],
+    "Two balls roll down a slide and fall off a table.": ["roll", "fall"],
+    "A ball and a cube fall into the water.": ["fall"],
+    "Drop a ball on a swing; it bounces.": ["Drop", "bounces"],
+    "Let a marble roll through the funnel.": ["roll"],
+    "A block is pushed off a table by a swinging pendulum.": ["pushed"],
+    "A stack collapses after being struck by a wrecking ball.": ["collapses", "struck"],
+    "A seesaw tilts to the left when a boy lands on its left end.": ["tilts", "lands"],
+    "A Go2 patrols the office, then comes back.": ["patrols", "comes"],
+    "A car stops with one wheel on the road.": ["stops"],
+    "A ball rolls to the left of the box.": ["rolls"],
+    "A drop of water, a roll of tape and a spring.": [],
+}
+
+
+@pytest.mark.parametrize("prompt", VERBS)
+def test_verbs_are_told_from_nouns(prompt: str) -> None:
+    assert found(prompt, "verb") == VERBS[prompt]
+
+
+def test_what_no_world_here_does_is_beyond() -> None:
+    for prompt, verb in (
+        ("A plastic bottle buckles under a 2-kg weight.", "buckles"), ("A dry twig breaks.", "breaks"),
+        ("A window pane shatters.", "shatters"), ("The candle is melting.", "melting"), ("The rod was bent.", "bent"),
+    ):  # fmt: skip
+        assert found(prompt, "beyond") == [verb]
+
+
+NUMBERS = {
+    "5 m/s": (5.0, "m/s"), "30 km/h": (30 / 3.6, "m/s"), "half a metre": (0.5, "m"), "0.5m": (0.5, "m"),
+    "a metre": (1.0, "m"), "one and a half metres": (1.5, "m"), "a 45-degree": (45.0, "deg"),
+    "60 rpm": (360.0, "deg/s"),
+    "twenty-one grams": (0.021, "kg"), "a dozen": (12.0, ""), "400 kg/m3": (400.0, "kg/m^3"), "two": (2.0, ""),
+    "180 degrees a second": (180.0, "deg/s"), "a quarter turn": (90.0, "deg"), "twice": (2.0, ""),
+    "1/4": (0.25, ""),
+    "1,000": (1000.0, ""), "0,5 m": (0.5, "m"), "10 %": (0.1, "1"), "9.81 m/s^2": (9.81, "m/s^2"),
+    "three seconds": (3.0, "s"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("words", NUMBERS)
+def test_numbers_have_their_value_in_si(words: str) -> None:
+    (number,) = [each for each in demands(f"It has {words}.") if each.kind == "number"]
+    assert (number.value, number.unit) == (pytest.approx(NUMBERS[words][0]), NUMBERS[words][1])
+
+
+def test_edges_share_the_last_ones_unit() -> None:
+    edges = [each for each in demands("A box of 40 x 20 x 10 cm.") if each.kind == "number"]
+    assert [(each.value, each.unit) for each in edges] == [(pytest.approx(x), "m") for x in (0.4, 0.2, 0.1)]
+
+
+def test_what_counts_nothing_is_no_number() -> None:
+    for prompt in ("One of them, the other one.", "The first ball, the 2nd, a Go2 and a G1.", "A single one-way gate."):
+        assert found(prompt, "number") == []
+
+
+def test_manners() -> None:
+    assert found("A ball rolls gently and very slowly on a jelly.", "manner") == ["gently", "slowly"]
+    assert found("A hard floor and a fast car.", "manner") == []
+
+
+@given(st.text(max_size=200))
+def test_any_text_is_read(text: str) -> None:
+    """Whatever it is, each demand's words are the prompt's, within its tokens."""
+    count = sum(not token.stops for token in tokens(text))
+    for each in demands(text):
+        assert each.text in text
+        assert 0 <= each.first <= each.last < count
+
+
+@given(st.floats(0.01, 999.0).map(lambda x: round(x, 2)), st.sampled_from(["m", "cm", "kg", "m/s", "degrees"]))
+def test_any_number_before_a_unit_is_read(value: float, unit: str) -> None:
+    (number,) = [each for each in demands(f"A thing of {value} {unit} lies there.") if each.kind == "number"]
+    assert number.text == f"{value} {unit}"
+    assert number.value == pytest.approx(value * (0.01 if unit == "cm" else 1.0))

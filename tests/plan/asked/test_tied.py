@@ -1,0 +1,40 @@
+"""Clauses that a prompt's words alone give."""
+
+from __future__ import annotations
+
+import pytest
+
+from wsim.plan.asked.covered import missing, not_checked
+from wsim.plan.asked.tied import UNASKED, UNFOUND, tied
+from wsim.plan.schema import Plan
+from wsim.rules.planner import plan
+
+TIED = {
+    "A ball rolls at 3 m/s and hits a row of three steel balls.": {
+        "rolls": ["ball.velocity"], "3 m/s": ["ball.velocity"], "hits": [0],
+        "three": ["steel_ball_1", "steel_ball_2", "steel_ball_3"],
+    },
+    "A pendulum of 2 m swings from 90 degrees.": {
+        "2 m": ["rod.size", "pendulum.place"], "swings": [0], "90 degrees": ["rod.place", "pendulum.place"],
+    },
+    "A red cork ball floats in a tank of water and an iron cube sinks.": {"floats": [0], "sinks": [1]},
+    "A crate slides at 3 m/s with a friction of 0.2 between the crate and the floor.": {
+        "slides": [0], "3 m/s": ["crate.velocity"], "0.2": ["ground.friction", "crate.friction"],
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("prompt", TIED)
+def test_each_verb_and_number_is_tied_to_what_shows_it(prompt: str) -> None:
+    made = plan(prompt)
+    assert {clause.words: clause.by for clause in made.clauses} == TIED[prompt]
+    assert missing(made) == []
+    assert not_checked(made) == []
+    assert Plan.model_validate(made.model_dump()) == made
+
+
+def test_what_nothing_shows_is_said_and_not_passed_over() -> None:
+    made = plan("A steel ball rolls down a ramp of 20 degrees.")
+    other = "A steel ball rolls down a ramp of 25 degrees and hits a wall."
+    asked = made.model_copy(update={"prompt": other, "clauses": []})
+    assert not_checked(tied(asked)) == [f"'25 degrees': {UNFOUND}", f"'hits': {UNASKED}"]
