@@ -85,7 +85,9 @@ def _throw(reader: Reader, thing: Thing, action: Action) -> None:
             continue
         elif place.phrase is not None and place.preposition in (*_INTO, "onto", "in", "on"):
             at = where(reader, place.phrase, thing)
-            if thing.into is not None or (isinstance(at, Thing) and at.noun.family == "vessel"):
+            if thing.target is not None and thing.target.support is None and place.preposition in ("on", "in"):
+                stand(reader, thing.target, [place])
+            elif thing.into is not None or (isinstance(at, Thing) and at.noun.family == "vessel"):
                 falls.come_down(reader, thing, action, place)
             elif at != "ground":
                 aim(reader, thing, place.phrase, action)
@@ -143,6 +145,7 @@ def _run(reader: Reader, thing: Thing, action: Action) -> None:
 # ---- on a hinge
 def _swing(reader: Reader, thing: Thing, action: Action) -> None:
     struck: list[Place] = []
+    stands: list[Place] = []  # where that is which it swings into
     for place in action.places:
         if place.preposition == "angle":
             thing.angle = place.value
@@ -152,6 +155,8 @@ def _swing(reader: Reader, thing: Thing, action: Action) -> None:
         at = where(reader, place.phrase, thing) if place.phrase is not None else None
         if isinstance(at, Thing) and at.noun.family in ("rod", "rope"):
             hang(reader, thing, at)
+        elif struck and place.preposition == "on" and isinstance(at, Thing):
+            stands.append(place)
         elif isinstance(at, Thing) and place.preposition in (*_INTO, "through") and action.verb == "swing":
             struck.append(place)
         elif at != "ground" or action.verb == "hang":
@@ -163,9 +168,13 @@ def _swing(reader: Reader, thing: Thing, action: Action) -> None:
     for place in struck:
         assert place.phrase is not None
         aim(reader, thing, place.phrase, action)
+    if thing.target is not None and thing.target.support is None:
+        stand(reader, thing.target, stands)
 
 
 def _tilt(reader: Reader, thing: Thing, action: Action) -> None:
+    if thing.support is not None and thing.support.noun.family == "seesaw":
+        thing = thing.support  # "a ball drops onto a seesaw and it tilts"
     toward = [place for place in action.places if place.preposition in ("to", "towards", "toward", "down")]
     angles = [place.value for place in action.places if place.preposition == "angle"]
     if thing.noun.family != "seesaw" or len(angles) + len(toward) != len(action.places):

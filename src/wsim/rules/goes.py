@@ -108,6 +108,12 @@ def strike(reader: Reader, thing: Thing, action: Action) -> None:
     """Hit, knock over, push, collide with: it rolls or slides into its target, or swings or falls on it."""
     if thing.noun.family != "pendulum" and thing.rod is None:
         movable(thing, action)
+    if action.target is None and action.particle in ("over", "down"):  # "the first is knocked over"
+        if [place for place in action.places if not common(reader, thing, place)]:
+            raise NotUnderstood([action.words], "needs to be told what is hit:")
+        put(thing, "ground")
+        do(thing, "topple")
+        return
     off, below = None, []
     for place in action.places:
         if place.preposition == "toward":

@@ -365,7 +365,8 @@ class _Clauses(Transformer):
         return Place("spot", phrase, direction=_meaning(children[0]), words=self._words(meta))
 
     def manner(self, meta: Any, children: list[Any]) -> Place:
-        return Place(_meaning(children[0]), words=self._words(meta))
+        lead = children[0]  # "stays there": where it is
+        return Place("still" if _is(lead, "THERE") else _meaning(lead), words=self._words(meta))
 
     def alone(self, _meta: Any, children: list[Any]) -> Place:
         return Place("bare", words=str(children[0]))
