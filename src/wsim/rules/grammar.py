@@ -88,6 +88,8 @@ class _Clauses(Transformer):
             elif isinstance(child, Clause):
                 child.within = within
                 clauses.append(child)
+            elif isinstance(child, tuple):  # "a chair faces a table on which a vase stands"
+                clauses += child
             elif child == "stop":
                 within = None
         return clauses
@@ -97,6 +99,14 @@ class _Clauses(Transformer):
         return Clause(subjects, [child for child in children if isinstance(child, Action)])
 
     bare = full
+
+    def embedded(self, meta: Any, children: list[Any]) -> tuple[Clause, Clause]:
+        """What the first clause ends with is where the things of the second are."""
+        outer, lead, inner = children
+        ends = [*outer.subjects, *(each for a in outer.actions for each in (a.target, *(p.phrase for p in a.places)))]
+        last = [phrase for phrase in ends if phrase is not None][-1]
+        inner.within = Place(_meaning(lead), last, words=self._words(meta))
+        return outer, inner
 
     def inverted(self, meta: Any, children: list[Any]) -> Clause:
         """ "On the table stands a bottle"."""

@@ -11,6 +11,7 @@ from wsim.rules.materials import material_named
 
 _FLOATING_RADIUS = 0.09  # of a ball that is lighter than water: it must draw more than a particle or two [m]
 _PLAY = 0.8  # of a vessel's width, which what is put in it takes up at most
+ROW_ROOM = 0.85  # of a table's depth, which a row of dominoes takes up at most
 _LANDING = 0.6  # the same of what comes down in it from aside
 SMALLEST, LARGEST = 0.02, 5.0  # what a length in the prompt may be [m]
 HARD = 1500.0  # density of what is made in no lighter kind [kg/m^3]
@@ -120,6 +121,9 @@ def _for_ball(thing: Thing, size: tuple[float, ...], cast: Cast, why: str) -> tu
         if one.target is thing and one.round
     ]
     share = min(2.0, radii[0] / usual) if radii else 1.0
+    if thing.support is not None and thing.support.noun.family == "furniture":  # a row has to go on it
+        pitch = size[0] + 0.5 * size[2]
+        share = min(share, ROW_ROOM * thing.support.noun.size[0] / (pitch * thing.count))
     if 0.7 <= share <= 1.5:
         return size, why
     return tuple(round(share * edge, 4) for edge in size), "as large against the ball that hits them as usual"
