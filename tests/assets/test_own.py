@@ -49,8 +49,8 @@ def test_the_catalogue_is_read_again_only_when_it_changed(keepsake: Path) -> Non
 
 def test_the_builtin_planner_knows_its_names(keepsake: Path) -> None:
     (thing,) = [item for item in plan("A keepsake falls on the ground.").objects if "keepsake" in item.name]
-    assert thing.construction.candidate == "blue_keepsake"
-    assert thing.size == pytest.approx(models.BOX, abs=1e-4)
+    assert thing.construction.asset == "blue_keepsake"
+    assert lexicon().nouns["blue_keepsake"].size == pytest.approx(models.BOX, abs=1e-4)
     remove("blue_keepsake")
     assert "keepsake" not in lexicon().vocabulary
 

@@ -213,7 +213,6 @@ def test_what_it_does_not_build_is_said(says: str, why: str) -> None:
         "A Polaris crosses a table.",
         "A Polaris leaves one dock.",
         "A crate stands on a dock.",
-        "A floating block.",
         "A Polaris leaves the table and crosses a floating block.",
         "A buggy leaves the other dock, crosses a raft, and reaches the other dock.",
         "A buggy reaches one dock, crosses a raft and leaves the other dock.",

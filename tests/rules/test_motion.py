@@ -34,7 +34,7 @@ def seen(made, name: str, ways) -> bool:
 
 # ---- on ramps
 def test_what_rests_on_a_ramp_is_asked_to_stay_in_its_place():
-    made = plan("A wooden block rests on a ramp of 40 degrees for 5 seconds.")
+    made = plan("A wooden block rests on a wooden ramp of 40 degrees for 5 seconds.")
     stays, settles = made.objectives
     block = made.object("wooden_block")
     assert settles.kind == "settles" and isinstance(stays.formula, StaysWithin)
@@ -51,9 +51,9 @@ def test_an_ice_ball_gets_a_ramp_on_which_it_rolls():
 @pytest.mark.parametrize(
     ("prompt", "slips"),
     [
-        ("An ice ball rolls down a ramp of 30 degrees.", True),
-        ("A steel ball rolls down a ramp of 60 degrees.", True),
-        ("A steel ball rolls down a ramp of 54 degrees.", False),  # atan(7/2 * 0.4) = 54.5 degrees
+        ("An ice ball rolls down a wooden ramp of 30 degrees.", True),
+        ("A steel ball rolls down a steel ramp of 60 degrees.", True),
+        ("A steel ball rolls down a steel ramp of 54 degrees.", False),  # atan(7/2 * 0.4) = 54.5 degrees
     ],
 )
 def test_a_ball_that_slips_down_a_ramp_is_warned_of(prompt, slips):
@@ -153,8 +153,8 @@ def test_a_stack_that_topples_is_pushed_as_one(prompt):
 
 
 def test_what_is_too_low_to_topple_is_refused():
-    with pytest.raises(UserError, match=r"0\.14 m high and 0\.2 m deep, it does not topple by itself"):
-        plan("A row of six wooden blocks topples.")
+    with pytest.raises(UserError, match=r"0\.4 m high and 0\.4 m deep, it does not topple by itself"):
+        plan("A row of six crates topples.")
 
 
 @pytest.mark.parametrize(
@@ -209,7 +209,9 @@ def test_a_friction_is_taken_as_said():
     assert own.object("crate").material.friction == 0.2 and own.contacts == []
     (more,) = plan("A crate with a friction of 0.9 slides at 3 m/s").contacts
     assert (more.ref, more.friction) == ("ground", 0.9)
-    steep = plan("A wooden block rests on a ramp of 40 degrees with a friction of 0.9 between the block and the ramp")
+    steep = plan(
+        "A wooden block rests on a wooden ramp of 40 degrees with a friction of 0.9 between the block and the ramp"
+    )
     assert "warning" not in choices(steep)
     with pytest.raises(UserError, match="a restitution of 3 is outside 0 to 1"):
         plan("A ball with a restitution of 3 drops")

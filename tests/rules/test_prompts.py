@@ -1,5 +1,6 @@
 """What the builtin planner makes of prompts, exactly; and what it refuses, by name."""
 
+import math
 import subprocess
 import sys
 import tomllib
@@ -59,10 +60,10 @@ def test_what_a_prompt_becomes(expected):
         ("A mug in a table", ["a mug in a table"]),
         ("A table rolls down a ramp", ["a table rolls down a ramp"]),
         ("A ball rolls down a table", ["rolls down a table"]),
-        ("A box under a table", ["under a table"]),
+        ("A box under a shelf", ["under a shelf"]),
         ("A cube swings", ["swings"]),
         ("Water pours onto a box", ["pours onto a box"]),
-        ("A ball between two walls", ["between two walls"]),
+        ("A ball between three walls", ["between three walls"]),
         ("A ball swings on a table", ["on a table"]),
         ("A mug on a ball on", ["on"]),
         ("A box holds a ball", ["a box holds a ball"]),
@@ -92,13 +93,12 @@ def test_a_word_that_is_nearly_known_is_suggested():
     ("prompt", "words"),
     [
         ("A ball rolls down an 80 degree ramp", "outside 1 to 60"),
-        ("Two ramps", "one ramp"),
-        ("A cylinder rolls down a ramp", "rolls balls only"),
-        ("A pendulum swings and a ball", "scene of its own"),
+        ("A box rolls down a ramp", "rolls balls, barrels and the like"),
+        ("A stack of three boxes slides down a ramp", "no stack or row on a ramp"),
+        ("Three boxes on a seesaw", "one thing on each end"),
         ("A pendulum swings from 120 degrees", "outside 0 to 90"),
         ("A ball is thrown at 500 m/s", "not above 0 and up to 50 m/s"),
         ("A box weighing 90000 kg", "outside 0.001 to 10000 kg"),
-        ("A ball rolls down a ramp and a cube floats in a tank", "without a tank"),
         ("Water pours into a bowl and a ball falls into a bucket", "empty vessel"),
         ("A ball rests on the ground for 500 seconds", "outside 0.1 to 60"),
         ("A robot dog patrols an office and a ball rolls", "'a ball': .* furnishes an office itself"),
@@ -125,7 +125,9 @@ def test_ramps_are_as_steep_as_friction_wants():
     rolling, why = angle("A steel ball rolls down a ramp")
     assert rolling == 20.0 and "2/7 tan(20 degrees) = 0.10" in why.pop()
     assert angle("A block slides down a 12 degree ramp") == (12.0, set())
-    warned = plan("A block slides down a 12 degree ramp").assumptions
+    [contact] = plan("A block slides down a 12 degree ramp").contacts
+    assert 0.0 < contact.friction < math.tan(math.radians(12.0))
+    warned = plan("A block slides down a 12 degree wooden ramp").assumptions
     assert any(a.choice.startswith("warning: at 12 degrees") for a in warned)
 
 
@@ -139,7 +141,9 @@ def test_measures_are_taken_as_said():
     assert plan("A red ball flies to the left at 6 m/s for 2 seconds").simulation.duration == 2.0
     mug = plan("A laptop on a desk and a mug 20 cm to the right of the laptop").object("mug")
     assert mug.relation("RIGHT-OF").gap == 0.2
-    assert mug.construction.kind == "external" and mug.construction.candidate == "mug"
+    assert mug.construction.kind == "asset" and mug.construction.asset == "mug"
+    red = plan("A red mug on a desk").object("red_mug")
+    assert red.construction.kind == "external" and red.construction.candidate == "mug"
 
 
 def test_the_catalogue_is_in_the_lexicon():
@@ -172,7 +176,7 @@ def test_what_stands_for_an_asset_is_as_large_and_heavy(noun):
 
 def test_a_mass_of_the_catalogue_goes_with_its_size():
     """A barrel in water is a small one: the mass of the large one would sink it."""
-    assert plan("A barrel on the ground").object("barrel").registration.mass == load_catalogue()["barrel"].mass
+    assert plan("A barrel rolls").object("barrel").registration.mass == load_catalogue()["barrel"].mass
     afloat = plan("A barrel floats in a tank of water")
     assert afloat.object("barrel").registration.mass is None
     assert not any(assumption.choice.startswith("warning") for assumption in afloat.assumptions)
@@ -180,12 +184,13 @@ def test_a_mass_of_the_catalogue_goes_with_its_size():
 
 
 def test_a_thing_of_the_usual_size_goes_into_its_vessel():
-    assert plan("A ball falls into a bucket").object("ball").size == (0.1,)
+    made = plan("A ball falls into a bucket")
+    assert 2 * made.object("ball").size[0] < min(load_catalogue()["bucket"].hollow.size[:2])
     made = plan("A ball falls into a bowl")
-    assert made.object("ball").size == (made.object("bowl").size[2] / 2,)
+    assert 2 * made.object("ball").size[0] < min(load_catalogue()["bowl"].hollow.size[:2])
     assert any(assumption.why == "so that it goes into a bowl" for assumption in made.assumptions)
     with pytest.raises(UserError, match="does not fit into bowl"):
-        plan("A potted plant in a bowl")
+        plan("A 40 cm ball in a bowl")
 
 
 def test_planning_loads_no_simulator():

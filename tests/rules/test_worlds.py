@@ -34,6 +34,11 @@ PROMPTS = [
     "A crate falls onto a seesaw and the seesaw tilts by 8 degrees",
     "A turntable turns at 30 rpm",
     "A steel ball with a restitution of 0.8 drops from 0.3 m for 1 second",
+    "A marble rolls off the edge of a table that is 0.8 m high and lands in a bucket on the floor",
+    "A pendulum with a 2 kg bob is let go from 60 degrees and knocks a wooden block off a pedestal",
+    "A seesaw with a 30 kg box on the left end and a 20 kg box on the right: the left end goes down",
+    "A box on a conveyor belt drops off its end into a bin",
+    "Two boxes hang from ropes",
 ]
 
 
@@ -53,7 +58,7 @@ def test_a_world_is_accepted(prompt, tmp_path):
 
 def test_what_slides_off_its_ramp_and_lies_still_has_not_rested_on_it(tmp_path):
     """By 3 s it is on the ground, at rest: more time, as advice, would change nothing; friction would."""
-    _, verdict = judged_world("A wooden block rests on a ramp of 40 degrees for 3 seconds", tmp_path)
+    _, verdict = judged_world("A wooden block rests on a wooden ramp of 40 degrees for 3 seconds", tmp_path)
     assert verdict.status == "rejected"
     wrong = [finding for finding in verdict.findings if not finding.passed]
     assert {finding.check for finding in wrong} >= {"ObjectiveFormula"}

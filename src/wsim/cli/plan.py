@@ -19,9 +19,9 @@ from wsim.errors import UserError
 from wsim.loop.options import Options
 from wsim.plan.schema import Plan
 from wsim.program.drafted import refuse_unbuildable
-from wsim.rules.grammar import known_words
 from wsim.rules.planner import plan as make_plan
 from wsim.rules.questions import questions
+from wsim.rules.words import known_words
 from wsim.runs.folder import write_whole
 
 if TYPE_CHECKING:

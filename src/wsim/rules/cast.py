@@ -20,6 +20,7 @@ class Beside:
     ref: Thing
     other: Thing | None = None
     gap: float | None = None  # [m]
+    loose: bool = False  # on whichever side
 
 
 @dataclass(eq=False)
@@ -31,6 +32,7 @@ class Thing:
     arrangement: str = ""  # "stack": on one another; "row": behind one another
     place: str | None = None  # "water" or "ground"
     support: Thing | None = None  # what it stands on or drops on, if that is another thing
+    bridges: Thing | None = None  # the second of two that it lies on
     inside: Thing | None = None  # the vessel that it is in
     beside: list[Beside] = field(default_factory=list)
     does: list[str] = field(default_factory=list)  # float, sink, submerge, drop, rest, roll, slide, topple, ...
@@ -39,6 +41,13 @@ class Thing:
     meets: Thing | None = None  # what comes at it as it comes at that
     path: Thing | None = None  # the ramp that it is on
     off: bool = False  # leaves its support
+    into: Thing | None = None  # what it comes down in or on, after it has left what it was on
+    side: str | None = (
+        None  # the end of its support: "left", "right", "one", "other", "middle"; of a seesaw: what goes down
+    )
+    times: int | None = None  # that it bounces, at least
+    manners: set[str] = field(default_factory=set)  # "upright", "head_on", "from_rest", "still", ...
+    of: int = 1  # how many the prompt spoke of, before one was chosen
     speed: float | None = None  # [m/s]
     way: float | None = None  # that it drives [m]
     angle: float | None = None  # [deg] of a throw, or of a pendulum at the start
@@ -101,6 +110,7 @@ class Cast:
     tank: str | None = None  # the prompt's words for it, if it was named
     water: str | None = None
     pour: Pour | None = None
+    ground: str | None = None  # the ground's material, if it is said
     office: str | None = None  # the prompt's words for one that is patrolled
     duration: float | None = None  # [s], if it was given
     assumptions: list[Assumption] = field(default_factory=list)

@@ -6,9 +6,6 @@ of the lexicon at its place or a number with its unit, and the phrases that the 
 
 from __future__ import annotations
 
-import difflib
-import re
-import textwrap
 from collections.abc import Iterator
 from functools import cache
 from typing import Any
@@ -17,56 +14,11 @@ from lark import Lark, Token, Transformer, UnexpectedInput, v_args
 from lark.exceptions import VisitError
 from lark.lexer import Lexer
 
-from wsim.errors import UserError
-from wsim.rules.lexicon import Lexicon, Named, grammar_text, lexicon
+from wsim.rules.lexicon import Named, grammar_text, lexicon
 from wsim.rules.phrases import Action, Clause, Phrase, Place
-from wsim.rules.running import with_running
+from wsim.rules.tokens import NOT_IN_THIS_ORDER, NotUnderstood, Tokens
 
-_WORD = re.compile(r"\d+(?:\.\d+)?|[^\W\d_]+/[^\W\d_]+(?:\^?\d)?|[^\W\d_]+(?:'[^\W\d_]+)?|\S")
-_SHOWN = 6  # words of what is not in order
-
-
-class NotUnderstood(UserError):  # noqa: N818 - it reads as the sentence it carries
-    """The builtin planner does not know some of the prompt's words, or not in this order."""
-
-    def __init__(self, words: list[str], reason: str) -> None:
-        self.words = words
-        quoted = ", ".join(f"{word!r}{_suggestion(word) if reason == _UNKNOWN else ''}" for word in words)
-        super().__init__(
-            f"the builtin planner {reason.rstrip(':')}: {quoted}. `wsim plan --words` lists what it knows; "
-            "--planner-model MODEL lets a language model plan any sentence"
-        )
-
-
-_UNKNOWN = "does not know"
-NOT_IN_THIS_ORDER = "knows these words, but not in this order"
-
-
-def _suggestion(word: str) -> str:
-    near = difflib.get_close_matches(word, sorted(lexicon().vocabulary), n=1, cutoff=0.75)
-    return f" (did you mean {near[0]!r}?)" if near else ""
-
-
-def known_words() -> str:
-    """What the planner knows, for people: a paragraph for each kind of words."""
-    known = lexicon()
-    things = sorted(
-        {
-            *(key.replace("_", " ") for key in known.nouns),
-            *known.words_of("GROUP"),
-            *known.words_of("FLUID"),
-            *known.words_of("GROUND"),
-        }
-    )
-    kinds = {
-        "things": things,
-        "materials": known.words_of("MATERIAL"),
-        "colours": known.words_of("COLOR"),
-        "sizes": [*known.words_of("SCALE"), "a measure such as 20 cm or 2 kg"],
-        "what they do": sorted(known.particles),
-        "where": [*known.words_of("SIDE"), "on", "in", "between"],
-    }
-    return "\n".join(textwrap.fill(f"{kind}: {', '.join(words)}", 80) for kind, words in kinds.items())
+__all__ = ["NOT_IN_THIS_ORDER", "NotUnderstood", "parse"]
 
 
 def parse(prompt: str) -> list[Clause]:
@@ -75,25 +27,18 @@ def parse(prompt: str) -> list[Clause]:
     Raises:
         NotUnderstood: names the words that are unknown, or the place where known words make no sentence.
     """
-    text = " ".join(re.sub(r"(?<=\w)-(?=\w)", " ", prompt.lower()).split())
-    tokens = _Tokens(text, lexicon())
+    tokens = Tokens(prompt, lexicon())
     try:
         clauses: list[Clause] = _Clauses(tokens).transform(_parser().parse(tokens.all()))
     except UnexpectedInput as error:
         token = getattr(error, "token", None)
-        at = len(text) if token is None or token.type == "$END" else token.start_pos
+        at = len(tokens.text) if token is None or token.start_pos is None else token.start_pos
         raise tokens.fail(at) from None
     except VisitError as error:
         raise error.orig_exc from None
     if not clauses:
         raise NotUnderstood([prompt.strip()], "found nothing to build in")
     return clauses
-
-
-class _Meant(Token):
-    """A token with what its entry means."""
-
-    meaning: Any = None
 
 
 class _Given(Lexer):
@@ -107,90 +52,7 @@ class _Given(Lexer):
 
 @cache
 def _parser() -> Lark:
-    return Lark(grammar_text(), parser="lalr", lexer=_Given, propagate_positions=True, maybe_placeholders=False)
-
-
-class _Tokens:
-    """The prompt's words, and the tokens that they make."""
-
-    def __init__(self, text: str, known: Lexicon) -> None:
-        self.text = text
-        self.known = known
-        self.spans = [match.span() for match in _WORD.finditer(text)]
-        self.words = [text[a:b] for a, b in self.spans]
-
-    def all(self) -> list[Token]:
-        """The tokens.
-
-        Raises:
-            NotUnderstood: a word is in no entry.
-        """
-        vocabulary = self.known.vocabulary
-        unknown = [w for w in dict.fromkeys(self.words) if not w[0].isdigit() and w not in vocabulary]
-        if unknown:
-            raise NotUnderstood(unknown, _UNKNOWN)
-        tokens: list[Token] = []
-        at = 0
-        while at < len(self.words):
-            found = self._edges(at) or self._measure(at) or self._entry(at)
-            if found is None:
-                raise self.fail(self.spans[at][0])
-            token, used = found
-            at += used
-            if token.type == "SIDE" and tokens and tokens[-1].type == "LENGTH":
-                tokens[-1].type = "OFFSET"  # "20 cm behind": the distance, not a size
-            if token.type == "LENGTH" and _drives(tokens):
-                token.type = "WAY"  # "drives 100 m": how far, not the size of what follows
-            tokens.append(token)
-        return with_running(tokens)
-
-    def fail(self, position: int) -> NotUnderstood:
-        """The words from a position of the text on, not understood in this order."""
-        rest = [word for word, (start, _) in zip(self.words, self.spans, strict=True) if start >= position]
-        return NotUnderstood([" ".join(rest[:_SHOWN] or self.words[-1:])], NOT_IN_THIS_ORDER)
-
-    def _token(self, kind: str, value: Any, at: int, used: int) -> tuple[Token, int]:
-        start, end = self.spans[at][0], self.spans[at + used - 1][1]
-        place = {"line": 1, "column": start, "end_line": 1, "end_column": end, "end_pos": end}
-        token = _Meant(kind, self.text[start:end], start, **place)
-        token.meaning = value
-        return token, used
-
-    def _entry(self, at: int) -> tuple[Token, int] | None:
-        for used in range(min(self.known.longest, len(self.words) - at), 0, -1):
-            entry = self.known.entries.get(tuple(self.words[at : at + used]))
-            if entry is not None:
-                return self._token(entry.terminal, entry.value, at, used)
-        return None
-
-    def _measure(self, at: int) -> tuple[Token, int] | None:
-        """A number, with its unit if it has one."""
-        if not self.words[at][0].isdigit():
-            return None
-        for most in (3, 2, 1):
-            words = tuple(self.words[at + 1 : at + 1 + most])
-            unit = self.known.units.get(words)
-            if unit is not None:
-                return self._token(unit[0], float(self.words[at]) * unit[1], at, len(words) + 1)
-        if not self.words[at].isdigit():
-            return self._token("NUMBER", float(self.words[at]), at, 1)
-        return self._token("COUNT", int(self.words[at]), at, 1)
-
-    def _edges(self, at: int) -> tuple[Token, int] | None:
-        """ "20 x 10 x 5 cm", "20 by 10 by 5 cm"."""
-        here = self.words[at : at + 6]
-        if len(here) < 6 or {here[1], here[3]} - {"x", "by"} or not all(here[i][0].isdigit() for i in (0, 2, 4)):
-            return None
-        kind, factor = self.known.units.get((here[5],), ("", 0.0))
-        if kind != "LENGTH":
-            return None
-        return self._token("EDGES", tuple(float(here[i]) * factor for i in (0, 2, 4)), at, 6)
-
-
-def _drives(tokens: list[Token]) -> bool:
-    """Whether what comes next is how far something drives: "drives", "drives forward for"."""
-    last = next((token for token in reversed(tokens) if token.type not in ("FOR", "DIRECTION")), None)
-    return last is not None and last.type == "VERB" and _meaning(last) == "drive"
+    return Lark(grammar_text(), parser="earley", lexer=_Given, propagate_positions=True, maybe_placeholders=False)
 
 
 def _is(child: Any, *kinds: str) -> bool:
@@ -203,9 +65,9 @@ def _meaning(token: Any) -> Any:
 
 @v_args(meta=True)
 class _Clauses(Transformer):
-    """The grammar's rules, each as what it means. A story is a list of subjects, actions and None for a full stop."""
+    """The grammar's rules, each as what it means."""
 
-    def __init__(self, tokens: _Tokens) -> None:
+    def __init__(self, tokens: Tokens) -> None:
         super().__init__()
         self.tokens = tokens
 
@@ -214,65 +76,121 @@ class _Clauses(Transformer):
 
     # ---- sentences
     def start(self, _meta: Any, children: list[Any]) -> list[Clause]:
-        story = next((child for child in children if isinstance(child, list)), [])
+        return next((child for child in children if isinstance(child, list)), [])
+
+    def story(self, _meta: Any, children: list[Any]) -> list[Clause]:
+        """The clauses; those after "a tank in which" say where their things are, up to the next full stop."""
         clauses: list[Clause] = []
-        for item in story:
-            fresh = not clauses or (isinstance(item, Phrase) and bool(clauses[-1].actions))
-            if item is None or fresh:
-                clauses.append(Clause())
-            if isinstance(item, Phrase):
-                clauses[-1].subjects.append(item)
-            elif isinstance(item, Action):
-                clauses[-1].actions.append(item)
-        return [clause for clause in clauses if clause.subjects]
+        within: Place | None = None
+        for child in children:
+            if isinstance(child, Place):
+                within = child
+            elif isinstance(child, Clause):
+                child.within = within
+                clauses.append(child)
+            elif isinstance(child, tuple):  # "a chair faces a table on which a vase stands"
+                clauses += child
+            elif child == "stop":
+                within = None
+        return clauses
 
-    def told(self, _meta: Any, children: list[Any]) -> list[Any]:
-        return [*(c for c in children if isinstance(c, Phrase)), *children[-1]]
+    def full(self, _meta: Any, children: list[Any]) -> Clause:
+        subjects = [child for child in children if isinstance(child, Phrase)]
+        return Clause(subjects, [child for child in children if isinstance(child, Action)])
 
-    def nothing(self, _meta: Any, _children: list[Any]) -> list[Any]:
-        return []
+    bare = full
 
-    def more(self, _meta: Any, children: list[Any]) -> list[Any]:
-        return list(children[-1])
+    def embedded(self, meta: Any, children: list[Any]) -> tuple[Clause, Clause]:
+        """What the first clause ends with is where the things of the second are."""
+        outer, lead, inner = children
+        ends = [*outer.subjects, *(each for a in outer.actions for each in (a.target, *(p.phrase for p in a.places)))]
+        last = [phrase for phrase in ends if phrase is not None][-1]
+        inner.within = Place(_meaning(lead), last, words=self._words(meta))
+        return outer, inner
 
-    def stop(self, _meta: Any, children: list[Any]) -> list[Any]:
-        return [None, *(children[-1] if isinstance(children[-1], list) else [])]
+    def inverted(self, meta: Any, children: list[Any]) -> Clause:
+        """ "On the table stands a bottle"."""
+        subjects = [child for child in children if isinstance(child, Phrase)]
+        verb = "rest" if _is(children[1], "BE") else _meaning(children[1])
+        return Clause(subjects, [Action(verb, self._words(meta), places=[children[0]])])
 
-    def act(self, _meta: Any, children: list[Any]) -> list[Any]:
-        return [*(c for c in children if isinstance(c, Action)), *children[-1]]
+    def within(self, meta: Any, children: list[Any]) -> Place:
+        phrase = next(child for child in children if isinstance(child, Phrase))
+        phrase.filled = phrase.filled or any(_is(child, "FILLED") for child in children)
+        return Place(_meaning(children[-1]), phrase, words=self._words(meta))
 
-    act_again = act
+    def link(self, _meta: Any, children: list[Any]) -> Any:
+        return children[0]
+
+    def breaks(self, _meta: Any, children: list[Any]) -> str:
+        return "stop" if any(_is(child, "BREAK") and str(child) in _STOPS for child in children) else "break"
+
+    def sep(self, _meta: Any, children: list[Any]) -> str:
+        return "stop" if str(children[0]) in _STOPS else "break"
 
     def joiners(self, _meta: Any, _children: list[Any]) -> None:
         return None
 
-    breaks = sep = joiners
+    opening = joiners
 
     # ---- things
     def subject(self, _meta: Any, children: list[Any]) -> Phrase:
         phrase: Phrase = children[0]
-        phrase.places = children[1:]
+        phrase.places = self._given_on([phrase], [child for child in children[1:] if isinstance(child, Place)])
         return phrase
 
-    def det(self, _meta: Any, children: list[Any]) -> bool:
-        return bool(_is(children[0], "THE"))
+    def _given_on(self, phrases: list[Phrase], places: list[Place]) -> list[Place]:
+        """The places, less those that follow a relative clause: "on a belt that runs at 1 m/s" is of the belt."""
+        kept: list[Place] = []
+        of = next((phrase for phrase in phrases if any(one.relative for one in phrase.clauses)), None)
+        for place in places:
+            if of is not None:
+                self._place(next(one for one in of.clauses if one.relative), place)
+                of.words += f" {place.words}"
+                continue
+            kept.append(place)
+            of = place.phrase if place.phrase is not None and any(o.relative for o in place.phrase.clauses) else None
+        return kept
+
+    def det(self, _meta: Any, children: list[Any]) -> Token:
+        return children[0]
 
     def thing(self, meta: Any, children: list[Any]) -> Phrase:
-        head = next(child for child in children if isinstance(child, Phrase) or _is(child, *_HEADS))
+        if len(children) == 1 and isinstance(children[0], Phrase) and children[0].choice:
+            return children[0]
+        heads = [child for child in children if isinstance(child, Phrase) or _is(child, *_HEADS)]
+        head = heads[0] if heads else self._stuff(children)
         phrase = head if isinstance(head, Phrase) else _phrase(head)
         phrase.words = self._words(meta)
         for child in children:
-            if isinstance(child, bool):
-                phrase.definite = child
+            if _is(child, "THE", "ART", "POSS"):
+                phrase.definite = not _is(child, "ART")
+            elif isinstance(child, Action):
+                (phrase.owner or phrase if phrase.kind == "part" else phrase).clauses.append(child)
             elif child is not head:
                 self._modify(phrase, child)
         return phrase
 
+    def _stuff(self, children: list[Any]) -> Phrase:
+        """What a material alone names, as in "a stone" or "a marble"."""
+        head = [child for child in children if _is(child, "MATERIAL")][-1]
+        noun = self.tokens.known.stuff.get(_meaning(head))
+        if noun is None:
+            raise self.tokens.fail(head.end_pos)
+        if noun != "ground":
+            children.remove(head)
+        return Phrase(noun, "")
+
     def _modify(self, phrase: Phrase, child: Any) -> None:
+        if phrase.kind == "part" and phrase.owner is not None:
+            phrase = phrase.owner  # "the edge of a table that is 0.8 m high"
+        if _is(child, "ING"):
+            phrase.clauses.append(Action(_meaning(child), str(child)))
+            return
         token, changes = child if isinstance(child, tuple) else (child, _changes(child))
         for name, value in changes.items():
             given = phrase.measures if name in _MEASURES else phrase.__dict__
-            if given.get(name) not in (None, False):
+            if given.get(name) not in (None, False, ()):
                 raise self.tokens.fail(token.start_pos)
             given[name] = value
 
@@ -280,13 +198,20 @@ class _Clauses(Transformer):
         axis = _meaning(children[1]) if len(children) > 1 else "length"
         return children[0], {axis: _meaning(children[0])}
 
-    def sized(self, _meta: Any, children: list[Any]) -> Any:
+    def sized(self, meta: Any, children: list[Any]) -> Any:
+        return self.size(meta, children) if _is(children[0], "LENGTH") else children[-1]
+
+    def said(self, _meta: Any, children: list[Any]) -> Any:
         return children[-1]
 
-    weighed = sized
+    def weighed(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
+        masses = tuple(_meaning(child) for child in children if _is(child, "MASS"))
+        return children[0], {"mass": masses[0]} if len(masses) == 1 else {"masses": masses}
 
     def made(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
         return children[0], {"material": _meaning(children[-1])}
+
+    owned = made
 
     def measured(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
         what, measure = _meaning(children[0]), children[1]
@@ -298,8 +223,49 @@ class _Clauses(Transformer):
     def tilted(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
         return children[0], {"angle": _meaning(children[1])}
 
-    def running(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
-        return children[0], {"runs": True, **{place.preposition: place.value for place in children[1:]}}
+    def doing(self, meta: Any, children: list[Any]) -> Action:
+        whole = next((child for child in children if isinstance(child, Action)), None)
+        if whole is not None:
+            whole.relative = True
+            return whole
+        verb = next(child for child in children if _is(child, "ING"))
+        action = Action(_meaning(verb), self._words(meta), relative=True)
+        for place in (child for child in children if isinstance(child, Place)):
+            self._place(action, place)
+        return action
+
+    def nth(self, meta: Any, children: list[Any]) -> Phrase:
+        chosen = self._choice("nth", meta, children)
+        chosen.nth = next(_meaning(child) for child in children if _is(child, "NTH"))
+        return chosen
+
+    def some(self, meta: Any, children: list[Any]) -> Phrase:
+        return self._choice("some", meta, children)
+
+    def one(self, meta: Any, children: list[Any]) -> Phrase:
+        return self._choice("some", meta, children)
+
+    def other(self, meta: Any, children: list[Any]) -> Phrase:
+        return self._choice("other", meta, children)
+
+    def all(self, meta: Any, children: list[Any]) -> Phrase:
+        chosen = self._choice("all", meta, children)
+        return chosen.owner if chosen.owner is not None and chosen.owner.choice else chosen
+
+    def described(self, meta: Any, children: list[Any]) -> Phrase:
+        chosen = self._choice("described", meta, children)
+        child = children[1]
+        if _is(child, "COMPARED"):
+            chosen.part = _meaning(child)
+        elif not (_is(child, "COUNT") or (isinstance(child, Phrase))):
+            self._modify(chosen, child)
+        return chosen
+
+    def _choice(self, which: str, meta: Any, children: list[Any]) -> Phrase:
+        """Some of what was spoken of before."""
+        of = next((child for child in children if isinstance(child, Phrase)), None)
+        count = next((_meaning(child) for child in children if _is(child, "COUNT")), None)
+        return Phrase("choice", self._words(meta), definite=True, count=count, choice=which, owner=of)
 
     def group(self, meta: Any, children: list[Any]) -> Phrase:
         phrase = Phrase("group", self._words(meta), arrangement=_meaning(children[0]))
@@ -310,14 +276,18 @@ class _Clauses(Transformer):
 
     def part(self, meta: Any, children: list[Any]) -> Phrase:
         owner = next((child for child in children if isinstance(child, Phrase)), None)
-        return Phrase("part", self._words(meta), part=_meaning(children[0]), owner=owner)
+        side = next((_meaning(child) for child in children if _is(child, "DIRECTION")), None)
+        side = "other" if any(_is(child, "OTHER") for child in children) else side
+        named = next(_meaning(child) for child in children if _is(child, "PART"))
+        return Phrase("part", self._words(meta), part=named, owner=owner, choice=side or "")
 
     # ---- what they do
     def does(self, meta: Any, children: list[Any]) -> Action:
-        verb = next(child for child in children if _is(child, "VERB"))
+        verb = next(child for child in children if _is(child, "VERB", "ING"))
         action = Action(_meaning(verb), self._words(meta))
         action.target = next((child for child in children if isinstance(child, Phrase)), None)
-        for place in (child for child in children if isinstance(child, Place)):
+        inner = [action.target] if action.target is not None else []
+        for place in self._given_on(inner, [child for child in children if isinstance(child, Place)]):
             self._place(action, place)
         known = self.tokens.known
         if (action.particle or "") not in (*known.particles[action.verb], *([""] if action.target else [])):
@@ -328,7 +298,7 @@ class _Clauses(Transformer):
 
     def _place(self, action: Action, place: Place) -> None:
         """Add a place to an action; "knocks over a stack" has a particle and a target."""
-        over = place.preposition in ("over", "down") and action.verb in ("knock", "topple")
+        over = place.preposition in ("over", "down") and action.verb in ("knock", "topple", "push")
         if over and action.target is None and place.phrase is not None:
             action.particle, action.target = place.preposition, place.phrase
         elif place.preposition == "bare" and action.particle is None:
@@ -337,7 +307,14 @@ class _Clauses(Transformer):
             action.places.append(place)
 
     def stands(self, meta: Any, children: list[Any]) -> Action:
-        return Action("rest", self._words(meta), places=[child for child in children if isinstance(child, Place)])
+        places = self._given_on([], [child for child in children if isinstance(child, Place)])
+        return Action("rest", self._words(meta), places=places)
+
+    def is_(self, meta: Any, children: list[Any]) -> Action:
+        """What a clause of its own says of a thing: "the ramp is at 20 degrees"."""
+        described = Phrase("described", self._words(meta))
+        self._modify(described, children[-1])
+        return Action("be", self._words(meta), target=described)
 
     # ---- where
     def at_thing(self, meta: Any, children: list[Any]) -> Place:
@@ -390,10 +367,22 @@ class _Clauses(Transformer):
         value = float(_meaning(children[1]))
         return Place(_meaning(children[0]), things[0], things[1], value=value, words=self._words(meta))
 
-    def bare(self, _meta: Any, children: list[Any]) -> Place:
+    def so_often(self, meta: Any, children: list[Any]) -> Place:
+        return Place("often", value=_meaning(children[-1]), words=self._words(meta))
+
+    def at_spot(self, meta: Any, children: list[Any]) -> Place:
+        phrase = children[-1] if len(children) > 1 else None
+        return Place("spot", phrase, direction=_meaning(children[0]), words=self._words(meta))
+
+    def manner(self, meta: Any, children: list[Any]) -> Place:
+        lead = children[0]  # "stays there": where it is
+        return Place("still" if _is(lead, "THERE") else _meaning(lead), words=self._words(meta))
+
+    def alone(self, _meta: Any, children: list[Any]) -> Place:
         return Place("bare", words=str(children[0]))
 
 
+_STOPS = (".", "!")
 _HEADS = ("NOUN", "FLUID", "GROUND", "PRONOUN")
 _MEASURES = ("x", "y", "z", "radius", "diameter", "mass", "density")
 
@@ -407,8 +396,8 @@ def _phrase(head: Token) -> Phrase:
 
 
 _FIELDS = {"COUNT": "count", "SCALE": "scale", "MATERIAL": "material", "COLOR": "color", "EDGES": "edges"}
-_FIELDS |= {"MASS": "mass", "ANGLE": "angle", "FILLED": "filled", "RUNNING": "runs"}
+_FIELDS |= {"MASS": "mass", "ANGLE": "angle", "FILLED": "filled", "WEIGHT": "weight", "SHAPE": "shape", "NTH": "nth"}
 
 
 def _changes(token: Token) -> dict[str, Any]:
-    return {_FIELDS[token.type]: True if token.type in ("FILLED", "RUNNING") else _meaning(token)}
+    return {_FIELDS[token.type]: True if token.type == "FILLED" else _meaning(token)}

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import lru_cache
 from importlib.resources import files
+from itertools import product
 from typing import Any, Literal
 
 from wsim.assets import Asset, load_catalogue
@@ -32,6 +33,10 @@ Family = Literal[
     "land",
     "dock",
     "pontoon",
+    "belt",
+    "turntable",
+    "rope",
+    "bob",
 ]
 Words = tuple[str, ...]
 BALL = "sport/ball"  # the catalogue's category of what is round and rolls
@@ -111,6 +116,7 @@ class Lexicon:
     particles: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of a verb; "" is none
     objects: set[str] = field(default_factory=set)  # verbs that take one
     groups: dict[str, str] = field(default_factory=dict)  # arrangement -> axis
+    stuff: dict[str, str] = field(default_factory=dict)  # a material's word -> the noun that it is by itself
 
     @property
     def longest(self) -> int:
@@ -120,7 +126,9 @@ class Lexicon:
     @property
     def vocabulary(self) -> set[str]:
         """Every word of every entry."""
-        return {word for words in (*self.entries, *self.units) for word in words} | {"x", "by"}
+        return {word for words in (*self.entries, *self.units) for word in words} | {
+            "x", "by", "half", "quarter", "times", "time"
+        }  # fmt: skip
 
     def words_of(self, terminal: str) -> list[str]:
         """All words of a terminal."""
@@ -150,6 +158,7 @@ def _lexicon(_assets: tuple[str, int]) -> Lexicon:
     nouns = _data("nouns")
     _groups(made, nouns)
     _nouns(made, nouns)
+    made.stuff |= nouns["stuff"]
     _others(made)
     _robots(made)
     return made
@@ -184,9 +193,25 @@ def _relations(made: Lexicon, data: dict[str, Any]) -> None:
     for key, all_words in data["direction"].items():
         for words in all_words:
             made.add(words, "DIRECTION", key)
+    for words, key in data["manner"].items():
+        made.add(words, "MANNER", key)
+    for key, all_words in data["in_which"].items():
+        for words in all_words:
+            made.add(words, "IN_WHICH", key)
+    _spots(made, data["spot"])
     for terminal, all_words in data["word"].items():
         for words in all_words:
             made.add(words, terminal, words)
+
+
+def _spots(made: Lexicon, data: dict[str, Any]) -> None:
+    """Each end of a thing with each lead: "on the left end", "at its other side", "on the right"."""
+    leads, tails = data["leads"], data["tails"]
+    for key in (key for key in data if key not in ("leads", "tails")):
+        for side in data[key]:
+            for lead, tail in product(leads, tails):
+                if tail or lead.endswith(("the", "its")):  # "on the left", but not "on left"
+                    made.add(f"{lead} {side}{tail}", "SPOT", key)
 
 
 def _quantities(made: Lexicon, data: dict[str, Any]) -> None:
@@ -194,6 +219,12 @@ def _quantities(made: Lexicon, data: dict[str, Any]) -> None:
         made.add(word, "COUNT", value)
     for word, value in data["size"].items():
         made.add(word, "SCALE", value)
+    for table in ("nth", "weight", "shape", "compared", "often"):
+        for word, value in data[table].items():
+            terminal = "TIMES" if table == "often" else table.upper()
+            made.add(word, terminal, tuple(value) if isinstance(value, list) else value)
+    for word, angle in data["slope"].items():
+        made.add(word, "ANGLE", angle)
     for word, axis in data["dimension"].items():
         made.add(word, "DIMENSION", axis)
     for kind, units in data["unit"].items():
@@ -240,11 +271,10 @@ def _groups(made: Lexicon, data: dict[str, Any]) -> None:
 
 def _nouns(made: Lexicon, data: dict[str, Any]) -> None:
     catalogue = load_catalogue()
-    taken = made.vocabulary
     for key, fields in _entries("nouns", "noun", data):
         asset = catalogue[fields["asset"]] if "asset" in fields else None
         noun = made.nouns[key] = _noun(key, fields, asset)
-        words = [*fields.get("words", ()), *(_names(asset, made, taken) if asset is not None else ())]
+        words = [*fields.get("words", ()), *(_names(asset, made) if asset is not None else ())]
         for filled in fields.get("filled", []):
             made.add(filled, "NOUN", Named(noun.key, plural=False, filled=True))
         _name(made, key, words, fields.get("plurals", ()))
@@ -289,11 +319,11 @@ def _built(asset: Asset, primitive: str, top: str | None) -> tuple[float, ...]:
     return tuple(round(edge, 6) for edge in size)
 
 
-def _names(asset: Asset, made: Lexicon, taken: set[str]) -> Iterator[str]:
+def _names(asset: Asset, made: Lexicon) -> Iterator[str]:
     """What the catalogue calls an asset, less what has a meaning: "wooden table" is a material and a thing."""
     for name in asset.names:
         words = name.replace("-", " ").split()
-        if words[0] not in made.materials and (len(words) > 1 or words[0] not in taken):
+        if words[0] not in made.materials and (len(words) > 1 or (words[0],) not in made.entries):
             yield " ".join(words)
 
 
@@ -318,13 +348,12 @@ def _plural(word: str) -> str:
 def _others(made: Lexicon) -> None:
     """The catalogue's other things: balls as spheres, the rest as solid stand-ins of their boxes."""
     known = {noun.asset for noun in made.nouns.values()}
-    taken = made.vocabulary
     for asset in load_catalogue().values():
         if asset.id not in known:
             shape, length = ("sphere", "diameter") if asset.category == BALL else ("box", "z")
             size = _built(asset, shape, None)
             made.nouns[asset.id] = Noun(asset.id, "solid", shape, size, size, length, "wood", asset.mass, asset.id)
-            _name(made, asset.id, list(_names(asset, made, taken)), ())
+            _name(made, asset.id, list(_names(asset, made)), ())
 
 
 def _robots(made: Lexicon) -> None:

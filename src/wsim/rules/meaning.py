@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from wsim.errors import UserError
 from wsim.rules.actions import MOVES, act, meet
-from wsim.rules.cast import CARRIERS, Cast, Pour, Thing
-from wsim.rules.grammar import NotUnderstood
-from wsim.rules.phrases import Action, Clause, Phrase
-from wsim.rules.places import stand
+from wsim.rules.cast import Cast, Pour, Thing
+from wsim.rules.lexicon import lexicon
+from wsim.rules.phrases import Action, Clause, Phrase, Place
+from wsim.rules.places import common, stand, support
 from wsim.rules.reader import EACH_OTHER, Reader
+from wsim.rules.tokens import NotUnderstood
+from wsim.rules.used import check_used
 
 
 def understand(clauses: list[Clause]) -> Cast:
@@ -27,33 +31,128 @@ def understand(clauses: list[Clause]) -> Cast:
 
 def _clause(reader: Reader, clause: Clause) -> None:
     """Take in one clause."""
+    _say_held(clause)
     subjects: list[Thing] = []
     scenery = []
-    pending: list[Phrase] = []
+    pending: list[Thing] = []
     for phrase in clause.subjects:
         if reader.is_scenery(phrase):
             reader.scenery(phrase)
             scenery.append(phrase)
             continue
-        if phrase.kind == "pronoun":
-            subjects += reader.pronoun(phrase, clause.actions)
-        else:
-            subjects.append(reader.thing(phrase))
-        pending.append(phrase)
+        found = reader.subjects(phrase, clause.actions)
+        subjects += found
+        pending += found
         if phrase.places:  # "a cork ball and an iron ball in a tank": both are in it
-            for thing in subjects[-len(pending) :]:
+            for thing in pending:
                 stand(reader, thing, phrase.places)
             pending = []
-    for action in clause.actions:
-        if _of_scenery(reader, clause, scenery, subjects, action):
-            continue
-        if action.verb in ("collide", "hit") and (action.target is None or action.target.part in EACH_OTHER):
-            meet(reader, subjects, action)
-            continue
+        for said in phrase.clauses:
+            _together(reader, found, said)
+    if clause.within is not None:
         for thing in subjects:
-            act(reader, thing, action)
+            _within(reader, thing, clause.within)
+    whole = [phrase.owner for phrase in clause.subjects if phrase.kind == "choice" and phrase.owner is not None]
+    named = [phrase for phrase in whole if phrase.kind in lexicon().nouns]
+    if named:
+        reader.spoken = [reader.thing(phrase) for phrase in named]
+    if any(phrase.kind not in ("choice", "pronoun", "part") for phrase in clause.subjects):
+        reader.spoken, reader.chosen = [*subjects], []
+    for action in clause.actions:
+        if not _of_scenery(reader, clause, scenery, subjects, action):
+            _together(reader, subjects, action)
+        for phrase in _places_of(action):
+            _say(reader, phrase, subjects)
+    for phrase in clause.subjects:
+        for place in phrase.places:
+            for each in (place.phrase, place.other):
+                if each is not None:
+                    _say(reader, each, subjects)
     if subjects:
-        reader.last = subjects
+        reader.last = [thing for thing in subjects if thing in reader.cast.things] or reader.last
+
+
+def _together(reader: Reader, subjects: list[Thing], action: Action) -> None:
+    """Let some things do what is said: two that go at each other as a pair, the rest each for itself."""
+    each_other = [place for place in action.places if place.phrase is not None and place.phrase.part in EACH_OTHER]
+    meets = action.verb in ("collide", "hit", "touch") and not any(
+        p.preposition in ("with", "into") for p in action.places
+    )
+    if (meets and (action.target is None or action.target.part in EACH_OTHER)) or (
+        each_other and action.verb in ("roll", "slide", "move", "push", "run")
+    ):
+        if not (meets and any("meet" in thing.does for thing in subjects)):
+            meet(reader, subjects, action)
+        elif not all(common(reader, thing, place) for place in action.places for thing in subjects):
+            raise NotUnderstood([action.words], "lets two things collide, but not so:")
+        return
+    agents = [place for place in action.places if place.preposition == "by" and place.phrase is not None]
+    if agents and action.target is None and action.verb in PASSIVE:
+        _by(reader, subjects, action, agents[0])
+        return
+    for thing in subjects:
+        carrier = thing.support if thing.support is not None and thing.support.noun.family == "turntable" else None
+        if action.verb == "run" and carrier is not None:
+            thing = carrier
+        if action.verb in ("move", "run") and thing.noun.family == "solid" and action.target is None:
+            action = replace(action, verb="roll" if thing.round else "slide")
+        act(reader, thing, action)
+
+
+def _by(reader: Reader, subjects: list[Thing], action: Action, agent: Place) -> None:
+    """ "Is hit by a ball": what the agent does to it."""
+    assert agent.phrase is not None
+    if len(subjects) != 1:
+        raise NotUnderstood([action.words], "lets one thing be hit by another; name one:")
+    target = Phrase("the", subjects[0].words)
+    reader.named[id(target)] = subjects[0]
+    reader.kept.append(target)
+    for thing in reader.subjects(agent.phrase, []):
+        places = [place for place in action.places if place is not agent]
+        act(reader, thing, replace(action, target=target, places=places))
+
+
+def _within(reader: Reader, thing: Thing, place: Place) -> None:
+    """In the tank, or on the table or ramp, that the clause before names."""
+    if thing.support is None and thing.inside is None and thing.path is None:
+        if place.preposition == "down":
+            assert place.phrase is not None
+            support(reader, thing, reader.thing(place.phrase))
+        else:
+            stand(reader, thing, [place])
+
+
+def _say_held(clause: Clause) -> None:
+    """ "A tank that holds water" is one that is filled."""
+    for phrase in [*clause.subjects, *(each for action in clause.actions for each in _places_of(action))]:
+        for said in phrase.clauses:
+            if said.verb == "hold" and said.target is not None and said.target.kind == "water":
+                phrase.filled, phrase.clauses = True, [one for one in phrase.clauses if one is not said]
+
+
+def _places_of(action: Action) -> list[Phrase]:
+    found = [action.target, *(each for place in action.places for each in (place.phrase, place.other))]
+    return [phrase for phrase in found if phrase is not None]
+
+
+def _say(reader: Reader, phrase: Phrase, subjects: list[Thing]) -> None:
+    """What a relative clause says of a thing that another clause names; if that stands still, of the subject."""
+    inner = [phrase.owner] if phrase.owner is not None else []
+    for each in [*inner, *([phrase.members] if phrase.members is not None else [])]:
+        _say(reader, each, subjects)
+    if not phrase.clauses:
+        return
+    if reader.is_scenery(phrase):
+        raise NotUnderstood([phrase.words], "lets blocks and balls act, but not a tank, water or the ground")
+    thing = reader.thing(phrase) if phrase.kind != "group" else None
+    for said in phrase.clauses:
+        own = thing is not None and (thing.noun.family in _ACTS or said.verb in ("run", "move", "tilt"))
+        for one in [thing] if own and thing is not None else subjects:
+            act(reader, one, said)
+
+
+PASSIVE = ("hit", "knock", "topple", "push", "touch")
+_ACTS = ("solid", "belt", "turntable", "pendulum", "seesaw", "robot", "vehicle")
 
 
 def _of_scenery(reader: Reader, clause: Clause, scenery: list[Phrase], subjects: list[Thing], action: Action) -> bool:
@@ -106,8 +205,11 @@ def _pour(reader: Reader, action: Action) -> None:
 
 def _settle(reader: Reader) -> None:
     """Give each thing whose place is open the one that the rest of the scene leaves for it."""
+    for thing in [one for one in reader.cast.things if one.count > 1 and one.noun.family in _SINGLE]:
+        reader.split(thing)
     for thing in reader.cast.things:
-        _check_used(thing)
+        _share_table(thing)
+        check_used(thing, struck=any(one.target is thing for one in reader.cast.things))
         if thing.place is not None:
             continue
         moves = bool({*MOVES, "topple"} & {*thing.does}) or thing.group or thing.noun.family != "solid"
@@ -131,34 +233,15 @@ def _check_water(cast: Cast) -> None:
                 f"{thing.words!r}: the builtin planner stacks things on the ground, not in water; unstack them, or "
                 "leave the water out"
             )
-    for thing in cast.things:
-        if cast.wet and {*MOVES} & {*thing.does}:
-            raise UserError(
-                f"{thing.words!r}: the builtin planner rolls things in a scene without a tank; leave the tank out, or "
-                "what rolls"
-            )
 
 
-def _check_used(thing: Thing) -> None:
-    """Refuse what no scene would use, rather than drop it."""
-    phrase, family = thing.phrase, thing.noun.family
-    goes = {"roll", "slide", "push", "throw", "meet", "ride", "run", "patrol", "drive", "cross"}
-    moving = thing.target is not None or goes & {*thing.does}
-    carries = family in CARRIERS or (thing.support is not None and thing.support.noun.family == "belt")
-    posed = thing.target or thing.meets or thing.path or thing.rod or thing.inside or thing.place == "water"
-    ill = family in ("pendulum", "seesaw") or (thing.support is not None and thing.support.noun.family == "seesaw")
-    for given, problem in (
-        (phrase.angle is not None and family != "ramp", "inclines a ramp, but not this"),
-        (phrase.filled, "fills a tank, a bucket or a bowl with water, but not this"),
-        (thing.speed is not None and not moving and not carries, "needs to be told how this moves"),
-        (thing.spin is not None and family != "turntable", "turns a turntable at a rate, but not this"),
-        (bool(thing.beside) and bool(posed or ill), "cannot place this beside something, with what else it does"),
-        (
-            family == "pendulum" and bool(set(phrase.measures) - {"x", "z", "mass"}),
-            "cannot give a pendulum this measure",
-        ),
-        (phrase.scale is not None and phrase.length is not None, "takes a size or a length, not both"),
-        ({"mass", "density"} <= set(phrase.measures), "takes a mass or a density, not both"),
-    ):
-        if given:
-            raise NotUnderstood([thing.words], problem)
+_SINGLE = ("ramp", "seesaw", "belt", "turntable")  # families that are built one by one
+
+
+def _share_table(thing: Thing) -> None:
+    """What is hit by a thing that goes along a table stands on that table, too."""
+    target, on = thing.target, thing.support
+    if target is None or on is None or target.support is not None or thing.off:
+        return
+    if on.noun.family == "furniture" and target.noun.family == "solid":
+        target.support = on

@@ -29,9 +29,12 @@ class Phrase:
     members: Phrase | None = None  # of a group
     part: str | None = None  # "surface", "top", "bottom", "end", "middle", "edge", of `owner`
     owner: Phrase | None = None
-    runs: bool = False  # "that runs at 1 m/s"
-    speed: float | None = None  # of what runs [m/s]
-    spin: float | None = None  # of what turns [deg/s]
+    choice: str = ""  # of some spoken of before: "nth", "some", "other", "all", "described"; of a part: its side
+    nth: int | None = None  # 1: the first; -1: the last
+    masses: tuple[float, ...] = ()  # [kg], of several that are alike but for that
+    weight: float | None = None  # against the usual: what is heavy is above 1
+    shape: tuple[str, float] | None = None  # the axis along which it is larger than usual, and how much: "tall"
+    clauses: list[Action] = field(default_factory=list)  # "that sinks", "floating"
     filled: bool = False  # a container that was said to hold water
     places: list[Place] = field(default_factory=list)
 
@@ -64,6 +67,7 @@ class Action:
     words: str
     target: Phrase | None = None
     particle: str | None = None
+    relative: bool = False  # said of a thing that the words before name: "that runs"
     places: list[Place] = field(default_factory=list)
 
 
@@ -73,6 +77,7 @@ class Clause:
 
     subjects: list[Phrase] = field(default_factory=list)
     actions: list[Action] = field(default_factory=list)
+    within: Place | None = None  # of "a tank in which": where all of them are
 
     @property
     def words(self) -> str:

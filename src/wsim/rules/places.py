@@ -4,36 +4,54 @@ from __future__ import annotations
 
 from wsim.errors import UserError
 from wsim.rules.cast import Beside, Thing
-from wsim.rules.grammar import NOT_IN_THIS_ORDER, NotUnderstood
+from wsim.rules.lexicon import lexicon
 from wsim.rules.phrases import Phrase, Place
 from wsim.rules.reader import Reader
+from wsim.rules.tokens import NOT_IN_THIS_ORDER, NotUnderstood
 
 SURFACES = {"friction": 2.0, "restitution": 1.0}  # what of a surface may be said, and its most
+MANNERS = ("head_on", "from_rest", "still", "together", "upright", "freely", "to_and_fro", "again", "level", "in_turn",
+           "beside", "on_side", "stacked")  # fmt: skip
+CARRIED = ("solid", "vessel")  # families of what may stand on something
+ROOMY = ("table", "desk", "workbench")  # what has room under it
 SIDES = ("LEFT-OF", "RIGHT-OF", "FRONT-OF", "BACK-OF")
 
 
 def stand(reader: Reader, thing: Thing, places: list[Place]) -> None:
-    """Where a thing is, when nothing says what it does there."""
-    for place in places:
+    """Where a thing is, when nothing says what it does there; "on a table in a corner" places the table, too."""
+    for number, place in enumerate(places):
         if common(reader, thing, place):
             continue
         at = place.phrase
-        if place.length is not None or place.preposition not in ("in", "inside", "on", "at") or at is None:
+        if (
+            place.length is not None
+            or place.preposition not in ("in", "inside", "on", "at", "into", "onto")
+            or at is None
+        ):
             raise NotUnderstood([f"{thing.words} {place.words}"], "knows these words, but cannot place them")
-        if at.kind == "group" and at.members is None and place.preposition == "in":
+        if at.kind == "group" and at.members is None and place.preposition in ("in", "into"):
             arrange(reader, thing, at.arrangement)
+            continue
+        below = thing.inside or thing.support
+        if number and below is not None and (below.place is None or below.place == "ground"):
+            stand(reader, below, [place])
             continue
         _stand_at(reader, thing, place, at)
 
 
 def _stand_at(reader: Reader, thing: Thing, place: Place, at: Phrase) -> None:
-    found = where(reader, at)
+    found = where(reader, at, thing)
     if isinstance(found, Thing):
-        if place.preposition in ("in", "inside"):
+        if place.preposition in ("in", "inside", "into"):
             put_inside(reader, thing, found)
-        elif found.noun.family == "rod":
+        elif found.noun.family in ("rod", "rope"):
             hang(reader, thing, found)
             return
+        elif found.count == 2 and not found.group and thing.noun.primitive == "box" and thing.count == 1:
+            first, second = reader.split(found)
+            support(reader, thing, first)
+            put(second, "ground")
+            thing.bridges = second
         else:
             support(reader, thing, found)
         do(thing, "rest")
@@ -64,9 +82,33 @@ def common(reader: Reader, thing: Thing, place: Place) -> bool:
         _surface(reader, thing, place)
     elif place.preposition == "angle" and thing.noun.family == "ramp":
         thing.phrase.angle = place.value
+    elif place.preposition == "angle" and thing.path is not None and "swing" not in thing.does:
+        if thing.path.phrase.angle not in (None, place.value):
+            raise UserError(f"{place.words!r}: the prompt gives the ramp {thing.path.phrase.angle:g} degrees before")
+        thing.path.phrase.angle = place.value
+    elif place.preposition == "stacked":
+        arrange(reader, thing, "stack")
+    elif place.preposition in MANNERS:
+        thing.manners.add(place.preposition)
+    elif place.preposition == "often":
+        thing.times = int(place.value or 1)
+    elif place.preposition == "spot":
+        _spot(reader, thing, place)
     else:
         return False
     return True
+
+
+def _spot(reader: Reader, thing: Thing, place: Place) -> None:
+    """At an end of a thing: of what is named, else of what it is on, else of the last that has ends."""
+    named = where(reader, place.phrase) if place.phrase is not None else thing.support or thing.path
+    found = named or reader.part_of(Phrase("part", "", part="end"))
+    if not isinstance(found, Thing) or found is thing:
+        raise NotUnderstood([place.words], "cannot tell of what this is an end:")
+    if thing.support is not found and thing.path is not found:
+        support(reader, thing, found)
+        do(thing, "rest")
+    thing.side = place.direction
 
 
 def _surface(reader: Reader, thing: Thing, place: Place) -> None:
@@ -87,12 +129,18 @@ def _surface(reader: Reader, thing: Thing, place: Place) -> None:
 def _beside(reader: Reader, thing: Thing, place: Place) -> None:
     assert place.side is not None and place.phrase is not None
     predicate = place.side.predicate
-    other = where(reader, place.phrase)
+    other = where(reader, place.phrase, thing)
     if predicate == "SPAWNED-ABOVE":
         _above(reader, thing, place, other)
         return
     if not isinstance(other, Thing) or other is thing:
         raise NotUnderstood([place.words], "places things by other things, not so:")
+    if predicate == "under" and other.noun.key in ROOMY and thing.noun.family == "solid" and thing.count == 1:
+        thing.beside.append(Beside("under", other))
+        for one in (thing, other):
+            put(one, "ground")
+        do(thing, "rest")
+        return
     if predicate == "under":
         if other.noun.family != "solid" or (other.support is not None and other.support is not thing):
             raise NotUnderstood(
@@ -103,11 +151,16 @@ def _beside(reader: Reader, thing: Thing, place: Place) -> None:
         return
     if other.count > 1 and not other.group:
         raise NotUnderstood([place.phrase.words], "cannot tell which of them this is")
+    if "water" in (thing.place, other.place) and place.side.key == "next_to":
+        for one in (thing, other):
+            put(one, "water")
+        thing.beside.append(Beside("beside", other))
+        return
     if predicate not in SIDES and place.length is not None:
         raise NotUnderstood([place.words], NOT_IN_THIS_ORDER)
     if place.side.assume:
         reader.cast.assume(thing.words, place.side.assume, f"the prompt says {place.words!r}, not on which side")
-    thing.beside.append(Beside(predicate, other, gap=place.length))
+    thing.beside.append(Beside(predicate, other, gap=place.length, loose=bool(place.side.assume)))
     if predicate in SIDES:
         put(thing, "ground")
         put(other, "ground")
@@ -132,8 +185,15 @@ def _above(reader: Reader, thing: Thing, place: Place, other: str | Thing) -> No
 def _between(reader: Reader, thing: Thing, place: Place) -> None:
     assert place.phrase is not None
     if place.other is None:
-        raise NotUnderstood([place.words], "needs to be told between which two things:")
-    first, second = where(reader, place.phrase), where(reader, place.other)
+        pair = reader.thing(place.phrase) if place.phrase.kind in lexicon().nouns else None
+        if pair is None or pair.count != 2 or pair.group:
+            raise NotUnderstood([place.words], "needs to be told between which two things:")
+        _put_between(thing, place, *reader.split(pair))
+        return
+    _put_between(thing, place, where(reader, place.phrase, thing), where(reader, place.other))
+
+
+def _put_between(thing: Thing, place: Place, first: str | Thing, second: str | Thing) -> None:
     if not isinstance(first, Thing) or not isinstance(second, Thing) or len({thing, first, second}) < 3:
         raise NotUnderstood([place.words], "places things between two other things, not so:")
     thing.beside.append(Beside("between", first, second))
@@ -142,15 +202,19 @@ def _between(reader: Reader, thing: Thing, place: Place) -> None:
     do(thing, "rest")
 
 
-def where(reader: Reader, phrase: Phrase) -> str | Thing:
-    """The water, the ground, or a thing."""
+def where(reader: Reader, phrase: Phrase, thing: Thing | None = None) -> str | Thing:
+    """The water, the ground, or a thing other than the one that is there."""
     if phrase.kind == "ground":
         reader.scenery(phrase)
         return "ground"
     if phrase.kind == "part":
         if phrase.owner is not None:
-            return where(reader, phrase.owner)
-        if phrase.part in ("surface", "bottom"):
+            return where(reader, phrase.owner, thing)
+        own = thing.support or thing.path if thing is not None else None
+        found = own or reader.part_of(phrase)
+        if found is not None:
+            return found
+        if phrase.part in ("surface", "bottom", "top"):
             return "water"
         raise NotUnderstood([phrase.words], "cannot tell of what this is a part")
     if reader.is_scenery(phrase):
@@ -159,7 +223,7 @@ def where(reader: Reader, phrase: Phrase) -> str | Thing:
     if phrase.kind == "pronoun":
         if reader.cast.wet and all(thing.place == "water" for thing in reader.last):
             return "water"
-        return reader.pronoun(phrase, [])[0]
+        return reader.it(phrase, thing)
     return reader.thing(phrase)
 
 
@@ -187,7 +251,7 @@ def support(reader: Reader, thing: Thing, other: Thing) -> None:
         )
     if other.count > 1 and not other.group:
         raise NotUnderstood([other.words], "cannot tell which of them this is")
-    if other.noun.family in ("vessel", "rod", "pendulum") or thing.noun.family not in ("solid", "vessel"):
+    if other.noun.family in ("vessel", "rod", "rope", "pendulum") or thing.noun.family not in CARRIED:
         raise NotUnderstood([f"{thing.words} on {other.words}"], "cannot stand this on that:")
     put(thing, "ground")
     put(other, "ground")
@@ -195,7 +259,7 @@ def support(reader: Reader, thing: Thing, other: Thing) -> None:
         thing.path = other
         return
     crowded = any(one is not thing and one.support is other for one in reader.cast.things)
-    if crowded and other.noun.family not in ("furniture", "belt", "turntable"):
+    if crowded and other.noun.family not in ("furniture", "belt", "turntable", "seesaw"):
         raise UserError(f"{other.words!r}: the builtin planner puts one thing, or a stack, on another, not two")
     thing.support = other
 
@@ -212,9 +276,12 @@ def put_inside(reader: Reader, thing: Thing, other: Thing) -> None:
 
 
 def hang(reader: Reader, thing: Thing, rod: Thing) -> None:
-    """Hang a thing on a rod, which is then no thing of its own."""
-    if rod.count > 1 or thing.count > 1 or not thing.round:
-        raise NotUnderstood([f"{thing.words} on {rod.words}"], "hangs one ball on a rod, but not this:")
+    """Hang a thing, or each of several, on a rod or a rope, which is then no thing of its own."""
+    counted = rod.phrase.count not in (None, 1, thing.count)
+    if counted or thing.noun.family != "solid" or (rod.noun.family == "rod" and not thing.round):
+        raise NotUnderstood(
+            [f"{thing.words} on {rod.words}"], "hangs balls on rods, and solid things on ropes, but not"
+        )
     reader.cast.things = [one for one in reader.cast.things if one is not rod]
     thing.rod = rod.phrase
     put(thing, "ground")

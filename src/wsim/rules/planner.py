@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import re
 
+from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.asked.tied import tied
 from wsim.plan.layout import layout
@@ -19,26 +20,30 @@ from wsim.plan.layout.land import set_down
 from wsim.plan.schema import Plan, SimulationPlan
 from wsim.plan.views import cameras
 from wsim.rules.cast import Cast
-from wsim.rules.grammar import NotUnderstood, parse
+from wsim.rules.grammar import parse
 from wsim.rules.lexicon import lexicon
 from wsim.rules.meaning import understand
 from wsim.rules.scenes.bounce import contacts
 from wsim.rules.scenes.carried import build_carried
+from wsim.rules.scenes.catalogue import as_they_are, themselves
 from wsim.rules.scenes.crossing import build_crossing
 from wsim.rules.scenes.drive import build_drive
 from wsim.rules.scenes.ground import build_ground
 from wsim.rules.scenes.incline import build_inclines
-from wsim.rules.scenes.mechanisms import build_pendulum, build_seesaw
 from wsim.rules.scenes.motion import ground_object
-from wsim.rules.scenes.part import Part
+from wsim.rules.scenes.part import Part, tidy
 from wsim.rules.scenes.patrol import build_patrol
+from wsim.rules.scenes.pendulum import build_pendulums
 from wsim.rules.scenes.pour import build_pour
+from wsim.rules.scenes.seesaw import build_seesaws
 from wsim.rules.scenes.tank import build_tank
 from wsim.rules.steps import steps
+from wsim.rules.tokens import NotUnderstood
 
 __all__ = ["NotUnderstood", "plan"]
 
 FRAME_RATE = 24.0  # [1/s]: the cinema's; a fifth fewer pictures than 30
+LANE = 0.4  # between parts of a scene that have places of their own [m]
 LONGEST = 60.0  # that a prompt may ask for [s]
 
 
@@ -51,6 +56,7 @@ def plan(prompt: str) -> Plan:
     """
     cast = understand(parse(prompt))
     scene = _scene(cast)
+    scene.duration = max([scene.duration, *(hung.duration for hung in scene.hung)])
     duration = _duration(cast, scene)
     _note_what_is_common(cast, prompt, duration, scene)
     common = {
@@ -60,14 +66,16 @@ def plan(prompt: str) -> Plan:
             duration=duration, spacing=scene.spacing, frame_rate=scene.frame_rate or FRAME_RATE
         ),
     }
-    placed = layout(Plan(objects=scene.objects, **common))
+    joined = {name for joint in scene.joints for name in (joint.child, joint.parent) if name is not None}
+    placed = layout(Plan(objects=themselves(scene.objects, scene.names, cast, joined), **common))
+    _hang(scene, placed)
     whole = set_down(Plan(objects=[*placed.objects, *scene.posed], joints=scene.joints, **common))
     return tied(
         Plan.model_validate(
             {
                 **whole.model_dump(),
                 "contacts": [*scene.contacts, *contacts(cast, scene.names, whole)],
-                "objectives": scene.objectives,
+                "objectives": as_they_are(scene.objectives, whole.objects),
                 "cameras": scene.cameras or cameras(whole, above=scene.surface, goes=scene.goes),
                 "steps": steps(whole),
                 "assumptions": cast.assumptions,
@@ -77,28 +85,49 @@ def plan(prompt: str) -> Plan:
 
 
 def _scene(cast: Cast) -> Part:
-    taken = {"ground", "side", "top", "pivot", "hold"}
-    scene = Part(objects=[ground_object()])
+    """Parts side by side: the tank, what has places of its own, and the row of what stands on the ground."""
+    taken = {"ground", "side", "top", "hold"}
+    scene = Part(objects=[ground_object(cast.ground)])
     crossing = build_crossing(cast, taken)
     if crossing.objects:
         scene.add(crossing)
         return scene
     if cast.wet:
         scene.add(build_tank(cast, taken))
-    for build in (build_pour, build_inclines, build_carried, build_pendulum, build_seesaw, build_patrol, build_drive):
-        made = build(cast, taken)
-        if made.objects and cast.wet:
-            raise UserError(
-                "the builtin planner builds ramps, belts, hinges and what is poured without a tank of water"
-            )
-        scene.add(made)
+    scene.hung = build_pendulums(cast, taken)
+    for hung in scene.hung:
+        scene.names |= hung.names
+    for build in (build_inclines, build_carried, build_seesaws):
+        for made in build(cast, taken):
+            scene.add(made.shifted(_free(scene, made)))
+    for alone in (build_pour, build_patrol, build_drive):
+        scene.add(alone(cast, taken))
     if any(thing.place == "ground" and id(thing) not in scene.names for thing in cast.things) and not cast.pour:
-        still = scene.objects[1:] if not cast.wet else []
-        fixed = Part(objects=still, posed=scene.posed, names=scene.names)
-        scene.add(build_ground(cast, taken, fixed, behind="tank" if cast.wet else None))
+        scene.add(build_ground(cast, taken, scene))
     if any(item.primitive == "terrain" for item in scene.posed):
         scene.objects = scene.objects[1:]  # the level ground
     return scene
+
+
+def _hang(scene: Part, placed: Plan) -> None:
+    """Set what hangs beside all the rest, once that has its place."""
+    beside = Part(objects=[item for item in placed.objects if item.primitive != "ground"])
+    beside.posed = [*scene.posed]
+    for hung in scene.hung:
+        moved = hung.shifted(_free(beside, hung))
+        scene.add(moved)
+        beside.add(moved)
+
+
+def _free(scene: Part, made: Part) -> float:
+    """How far along Y a part has to go to be beside what is there [m]."""
+    _, high = scene.span
+    if not any(item.pose is not None for item in (*scene.objects, *scene.posed)):
+        tank = next((item for item in scene.objects if item.primitive == "tank"), None)
+        if tank is None:
+            return 0.0
+        high = tank.size[1] / 2 + WALL
+    return tidy(high + LANE - made.span[0])
 
 
 def _duration(cast: Cast, scene: Part) -> float:

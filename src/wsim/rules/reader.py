@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from copy import copy
+from dataclasses import replace
+
 from wsim.errors import UserError
-from wsim.rules.cast import CARRIERS, Cast, Thing
-from wsim.rules.grammar import NotUnderstood
+from wsim.rules.cast import Cast, Thing
 from wsim.rules.lexicon import lexicon
 from wsim.rules.phrases import Action, Phrase
+from wsim.rules.tokens import NotUnderstood
 
 MOST_OF_A_KIND = 24
 UNCOUNTED = 3  # how many "some" are: a plural without a number
@@ -19,22 +22,30 @@ class Reader:
     def __init__(self) -> None:
         self.cast = Cast()
         self.last: list[Thing] = []  # what "it" and "they" mean
+        self.spoken: list[Thing] = []  # among which "the first" or "the other" chooses
+        self.chosen: list[Thing] = []  # by the choices so far
         self.named: dict[int, Thing] = {}  # what a phrase was found to name, by identity
+        self.kept: list[Phrase] = []  # made on the way: their identity must stay theirs
         self.tanks: list[Phrase] = []
         self.struck: Thing | None = None  # the stack that was hit last
 
     # ---- the tank, the water, the ground
     def is_scenery(self, phrase: Phrase) -> bool:
         """Whether a phrase names the tank, the water or the ground, which the cast holds once."""
-        if phrase.kind in ("water", "ground", "part"):
+        if phrase.kind in ("water", "ground"):
             return True
+        if phrase.kind == "part":
+            return self.part_of(phrase) is None
         noun = lexicon().nouns.get(phrase.kind)
         return noun is not None and (noun.family == "tank" or (noun.family == "vessel" and phrase.filled))
 
     def scenery(self, phrase: Phrase) -> None:
         """Take in the tank, the water or the ground."""
+        if phrase.kind == "ground":
+            self._ground(phrase)
+            return
         _check_adjectives(phrase)
-        if phrase.kind not in ("water", "ground", "part"):
+        if phrase.kind not in ("water", "part"):
             again = phrase.definite or any(phrase is known for known in self.tanks)
             if self.cast.tank is not None and not again:
                 raise UserError(
@@ -52,6 +63,14 @@ class Reader:
             else:
                 raise NotUnderstood([phrase.words], "cannot place this there")
 
+    def _ground(self, phrase: Phrase) -> None:
+        """The ground, which may be of a material: "a wooden floor", "ice"."""
+        _check_adjectives(replace(phrase, material=None))
+        if phrase.material is not None:
+            if self.cast.ground not in (None, phrase.material):
+                raise UserError(f"{phrase.words!r}: the ground is of {self.cast.ground} already; it is one")
+            self.cast.ground = phrase.material
+
     # ---- things
     def pronoun(self, phrase: Phrase, actions: list[Action]) -> list[Thing]:
         """The things that "it" or "they" mean."""
@@ -62,15 +81,76 @@ class Reader:
             raise NotUnderstood([phrase.words], "cannot tell what this stands for")
         return self.last
 
+    def it(self, phrase: Phrase, besides: Thing | None) -> Thing:
+        """The one thing, other than the one that is spoken of, that "it" means."""
+        single = phrase.part in ("it", "itself")
+        for group in (self.last, self.cast.things[::-1]):
+            for one in group:
+                if one is not besides and (one.count == 1 or one.group or not single):
+                    return one
+        raise NotUnderstood([phrase.words], "cannot tell what this stands for")
+
+    def subjects(self, phrase: Phrase, actions: list[Action]) -> list[Thing]:
+        """The things that a clause is about."""
+        if phrase.kind == "pronoun":
+            return self.pronoun(phrase, actions)
+        if phrase.kind == "choice":
+            return self._choose(phrase)
+        if phrase.kind == "part":
+            owner = self.part_of(phrase)
+            if owner is None:
+                raise NotUnderstood([phrase.words], "cannot tell of what this is a part")
+            other = {"left": "right", "right": "left"}
+            owner.side = (
+                other.get(self._end_of(owner), "other") if phrase.choice == "other" else phrase.choice or owner.side
+            )
+            return [owner]
+        if phrase.nth is not None and phrase.definite:
+            return self._choose(replace(phrase, choice="nth", kind="choice", owner=None), phrase)
+        if phrase.masses:
+            return self._weighed(phrase)
+        return [self.thing(phrase)]
+
+    def _end_of(self, owner: Thing) -> str:
+        """The end of a thing that was spoken of before: that at which something is."""
+        sides = [one.side for one in self.cast.things if one.support is owner and one.side in ("left", "right", "one")]
+        if not sides:
+            return owner.side or ""
+        for one in self.cast.things:
+            if one.support is owner and one.side == "one":
+                one.side = "right"
+        return "right" if sides[0] == "one" else sides[0] or ""
+
+    def _weighed(self, phrase: Phrase) -> list[Thing]:
+        """ "Two weights of 3 kg and 2 kg": as many things as masses."""
+        if phrase.count not in (None, len(phrase.masses)):
+            raise NotUnderstood([phrase.words], "needs a mass for each of them")
+        made = [replace(phrase, count=1, masses=(), measures={"mass": mass}) for mass in phrase.masses]
+        return [self.thing(each) for each in made]
+
+    def part_of(self, phrase: Phrase) -> Thing | None:
+        """The thing of which a phrase names a part: its owner's, else the last that has ends; None for the water's."""
+        if phrase.owner is not None:
+            return None if self.is_scenery(phrase.owner) else self.thing(phrase.owner)
+        if phrase.part in ("surface", "bottom") or (phrase.part == "top" and self.cast.wet):
+            return None
+        ends = [thing for thing in self.cast.things if thing.noun.family in _ENDED]
+        return ends[-1] if ends else None
+
     def thing(self, phrase: Phrase) -> Thing:
         """The thing that a phrase names: one spoken of before, or a new one."""
+        if phrase.kind == "choice" or (phrase.nth is not None and phrase.definite):
+            found = self.subjects(phrase, [])
+            if len(found) != 1:
+                raise NotUnderstood([phrase.words], "cannot tell which of them this is")
+            return found[0]
         if id(phrase) not in self.named:
             self.named[id(phrase)] = self._find(phrase)
-            if phrase.runs:
-                _let_run(self.named[id(phrase)], phrase)
         return self.named[id(phrase)]
 
     def _find(self, phrase: Phrase) -> Thing:
+        if phrase.kind == "bob":
+            return self._bob(phrase)
         if phrase.definite:
             known = [thing for thing in self.cast.things if _matches(thing, phrase)]
             if len(known) > 1:
@@ -79,7 +159,7 @@ class Reader:
                 return known[0]
         described = phrase
         if phrase.kind == "group":
-            _check_adjectives(phrase)
+            _check_adjectives(replace(phrase, shape=None))
             if phrase.members is None:
                 raise NotUnderstood(
                     [phrase.words], "has to be told what this is made of, as in 'a stack of five boxes'"
@@ -87,9 +167,23 @@ class Reader:
             described = phrase.members
         thing = Thing(described, self._count(described, phrase.kind == "group"), arrangement=phrase.arrangement)
         thing.phrase.words = phrase.words
+        if thing.kind == "domino" and thing.count > 1:
+            thing.arrangement = thing.arrangement or "row"
         if phrase.kind == "group" and thing.noun.family != "solid":
             raise NotUnderstood([phrase.words], "stacks what moves, but not this")
         self.cast.things.append(thing)
+        return thing
+
+    def _bob(self, phrase: Phrase) -> Thing:
+        """A pendulum's bob is the pendulum, of which it says mass, size and material."""
+        pendulums = self.cast.family("pendulum")
+        if not pendulums or phrase.length or phrase.edges or (phrase.count or 1) > 1:
+            raise NotUnderstood([phrase.words], "knows the bob of a pendulum, but not this")
+        thing = pendulums[-1]
+        for name in ("material", "color", "scale", "weight"):
+            if getattr(phrase, name) is not None:
+                setattr(thing.phrase, name, getattr(phrase, name))
+        thing.phrase.measures |= phrase.measures
         return thing
 
     def _count(self, phrase: Phrase, group: bool) -> int:
@@ -103,15 +197,72 @@ class Reader:
             raise UserError(f"{phrase.words!r}: the builtin planner places 1 to {MOST_OF_A_KIND} things of a kind")
         return phrase.count
 
+    # ---- some of what was spoken of
+    def _choose(self, phrase: Phrase, kind: Phrase | None = None) -> list[Thing]:
+        """Which of the things that were spoken of a choice means: "the first", "the other", "all", "the steel one"."""
+        among = self._among(phrase, kind)
+        rest = [thing for thing in among if thing not in self.chosen]
+        count = phrase.count or 1
+        if phrase.choice == "all":
+            found = among
+        elif phrase.choice == "other":
+            found = rest or [thing for thing in among if thing.group]
+        elif phrase.choice == "nth":
+            start = (phrase.nth or 1) - 1 if (phrase.nth or 1) > 0 else len(among) - count
+            found = among if len(among) == 1 and among[0].group else among[start : start + count]
+        elif phrase.choice == "some":
+            found = rest[:count]
+        else:
+            found = _described(among, phrase)
+        if not found or (phrase.choice in ("nth", "some") and len(found) < count and not found[0].group):
+            raise NotUnderstood([phrase.words], "cannot tell which of what was spoken of this is")
+        self.chosen += found
+        return found
 
-def _let_run(thing: Thing, phrase: Phrase) -> None:
-    """Take in what a phrase says of how it runs: "a belt that runs at 1 m/s"."""
-    if thing.noun.family not in CARRIERS:
-        raise NotUnderstood([phrase.words], "lets a conveyor run and a turntable turn, but not this")
-    thing.place = "ground"
-    thing.does.append("run")
-    thing.speed = thing.speed if phrase.speed is None else phrase.speed
-    thing.spin = thing.spin if phrase.spin is None else phrase.spin
+    def _among(self, phrase: Phrase, kind: Phrase | None) -> list[Thing]:
+        """What a choice chooses from; several that are alike become single things."""
+        if phrase.owner is not None and phrase.owner.kind != "pronoun":
+            among = self.subjects(phrase.owner, [])
+        elif kind is not None:
+            among = [thing for thing in self.cast.things if thing.kind == kind.kind]
+        else:
+            among = self.spoken
+        whole = phrase.choice == "all"
+        found: list[Thing] = []
+        for thing in among:
+            found += [thing] if whole or thing.count == 1 or thing.group else self.split(thing)
+        return found
+
+    def split(self, thing: Thing) -> list[Thing]:
+        """Single things in place of one that is several."""
+        singles = []
+        for _ in range(thing.count):
+            one = copy(thing)
+            one.phrase = replace(thing.phrase, count=1, plural=False)
+            one.count, one.does, one.beside = 1, [*thing.does], [*thing.beside]
+            one.surface, one.pairs, one.of = dict(thing.surface), [*thing.pairs], thing.count
+            singles.append(one)
+        at = self.cast.things.index(thing)
+        self.cast.things[at : at + 1] = singles
+        for known in (self.spoken, self.last):
+            if thing in known:
+                known[:] = [new for old in known for new in (singles if old is thing else [old])]
+        return singles
+
+
+_ENDED = ("seesaw", "belt", "furniture", "ramp")  # what has ends, edges and a top
+
+
+def _described(among: list[Thing], phrase: Phrase) -> list[Thing]:
+    """Those with the attributes of a choice: "the steel one", "the heavier one"."""
+    if phrase.part is None:
+        kind = among[0].phrase.kind if among else ""
+        return [one for one in among if _matches(one, replace(phrase, kind=one.kind if kind else ""))]
+    key = {"heavier": ("mass", 1), "lighter": ("mass", -1)}.get(phrase.part, ("length", 0))
+    if key[1] == 0 or any("mass" not in one.phrase.measures for one in among) or len(among) < 2:
+        raise NotUnderstood([phrase.words], "needs the mass of each, to know which this is")
+    ordered = sorted(among, key=lambda one: -key[1] * one.phrase.measures["mass"])
+    return ordered[:1]
 
 
 def _check_adjectives(phrase: Phrase) -> None:
@@ -123,7 +274,8 @@ def _check_adjectives(phrase: Phrase) -> None:
     sized = phrase.scale is not None or phrase.length is not None or bool(phrase.measures)
     counted = phrase.count is not None and phrase.count != 1
     filled = phrase.filled and not vessel
-    if phrase.runs or carried or sized or counted or filled or phrase.angle is not None:
+    other = phrase.weight or phrase.shape or phrase.masses or phrase.clauses or phrase.edges
+    if other or carried or sized or counted or filled or phrase.angle is not None:
         raise NotUnderstood([phrase.words], "can give these words to a block or a ball, but not to this")
 
 
@@ -139,9 +291,11 @@ def _matches(thing: Thing, phrase: Phrase) -> bool:
         said.material is None or materials[said.material] != materials[phrase.material]
     ):
         return False
-    for name in ("color", "scale", "length"):
+    for name in ("color", "scale", "length", "weight", "shape"):
         if getattr(phrase, name) is not None and getattr(phrase, name) != getattr(said, name):
             return False
+    if any(said.measures.get(name) != value for name, value in phrase.measures.items()):
+        return False
     if phrase.count is not None and phrase.count != thing.count:
         return False
     if not phrase.plural and thing.count > 1 and not thing.group:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from wsim.assets import get
 from wsim.errors import UserError
 from wsim.plan.schema import External, Material, PlanObject, Proxy, Registration, Relation
 from wsim.rules.cast import Cast, Thing
-from wsim.rules.lexicon import lexicon
+from wsim.rules.lexicon import Noun, lexicon
 from wsim.rules.materials import material_named
 
 _FLOATING_RADIUS = 0.09  # of a ball that is lighter than water: it must draw more than a particle or two [m]
 _PLAY = 0.8  # of a vessel's width, which what is put in it takes up at most
+ROW_ROOM = 0.85  # of a table's depth, which a row of dominoes takes up at most
+_LANDING = 0.6  # the same of what comes down in it from aside
 SMALLEST, LARGEST = 0.02, 5.0  # what a length in the prompt may be [m]
+HARD = 1500.0  # density of what is made in no lighter kind [kg/m^3]
 LIGHTEST, HEAVIEST = 0.001, 10_000.0  # and a mass [kg]
 
 
@@ -18,7 +22,7 @@ def material_of(thing: Thing, cast: Cast) -> Material:
     """The thing's material, its colour applied; what was not said is noted."""
     word = thing.phrase.material
     if word is None:
-        word = thing.noun.material or _default_material(thing)
+        word = _by_weight(thing) or thing.noun.material or _default_material(thing)
         cast.assume(thing.words, f"of {word}", "the prompt names no material", "material", word)
     elif word == "metal":
         cast.assume(thing.words, "of steel", "the prompt says metal, not which")
@@ -28,9 +32,30 @@ def material_of(thing: Thing, cast: Cast) -> Material:
     weighed = bool({"mass", "density"} & set(thing.phrase.measures))
     if word in ("wood", "wooden") and not weighed:
         cast.assume(thing.words, f"wood of {material.density:g} kg/m^3", "the prompt does not say which wood")
-    density = thing.phrase.measures.get("density")
+    density = thing.phrase.measures.get("density") or _weighty(thing, material, cast)
     own = {} if density is None else {"density": density}
     return material.model_copy(update={**own, **thing.surface}) if own or thing.surface else material
+
+
+def _by_weight(thing: Thing) -> str | None:
+    """The material of what is said to be heavy or light, where none is named."""
+    if thing.phrase.weight is None or "mass" in thing.phrase.measures or thing.noun.asset is not None:
+        return None
+    return "steel" if thing.phrase.weight > 1.0 else "cork"
+
+
+def _weighty(thing: Thing, material: Material, cast: Cast) -> float | None:
+    """The density of what is heavy or light; of a metal or a stone it is what it is [kg/m^3]."""
+    factor = thing.phrase.weight
+    if factor is None or "mass" in thing.phrase.measures:
+        return None
+    what = "heavy" if factor > 1.0 else "light"
+    if material.density > HARD:
+        cast.assume(thing.words, f"{material.density:g} kg/m^3", f"the density of {material.name}, {what} or not")
+        return None
+    made = round(material.density * (min(factor, 1.3) if factor > 1.0 else max(factor, 0.6)), 1)
+    cast.assume(thing.words, f"{made:g} kg/m^3", f"the prompt says {what}, not how much; of {material.name}")
+    return made
 
 
 def _default_material(thing: Thing) -> str:
@@ -56,10 +81,18 @@ def size_of(thing: Thing, material: Material, water_density: float, cast: Cast) 
                 f"{thing.words!r}: {length:g} m is outside {SMALLEST:g} to {LARGEST:g} m, the builtin planner's range"
             )
     why = "the prompt gives no size"
-    if thing.inside is not None and noun.asset is None:  # what the catalogue has is as large as it is
-        fitting = _fitting(size, thing.inside.noun.size)
-        why = why if fitting == size else f"so that it goes into {thing.inside.words}"
-        size = fitting
+    vessel = thing.inside or thing.into
+    if vessel is not None and noun.asset is None:  # what the catalogue has is as large as it is
+        scaled = tuple(edge * (phrase.scale or 1.0) for edge in size)
+        fitting = _fitting(scaled, _mouth(vessel.noun), _PLAY if thing.into is None else _LANDING)
+        why = why if fitting == scaled else f"so that it goes into {vessel.words}"
+        size = tuple(edge / (phrase.scale or 1.0) for edge in fitting)
+    if noun.key == "domino" and phrase.length is None:
+        size, why = _for_ball(thing, size, cast, why)
+    if noun.family == "vessel" and phrase.length is None:
+        size, why = _roomy(thing, size, cast, why)
+    if phrase.shape is not None:
+        size, why = _shaped(noun.primitive, size, *phrase.shape), "the prompt says only how it is against the usual"
     if phrase.length is not None:
         size = _from_length(thing, phrase.length, size)
         why = f"{phrase.length:g} m is {_MEANS[noun.length]}"
@@ -73,13 +106,59 @@ def size_of(thing: Thing, material: Material, water_density: float, cast: Cast) 
     return size
 
 
-def _fitting(size: tuple[float, ...], room: tuple[float, ...]) -> tuple[float, ...]:
+def _mouth(noun: Noun) -> tuple[float, ...]:
+    """The room in a vessel [m]: a catalogue's own is round, and narrower than the box round it."""
+    asset = get(noun.asset) if noun.asset is not None else None
+    return noun.size if asset is None or asset.hollow is None else tuple(asset.hollow.size)
+
+
+def _for_ball(thing: Thing, size: tuple[float, ...], cast: Cast, why: str) -> tuple[tuple[float, ...], str]:
+    """Dominoes as large against the ball that knocks them over as the usual ones are against the usual ball [m]."""
+    usual = lexicon().nouns["ball"].size[0]
+    radii = [
+        one.phrase.measures.get("radius", (one.phrase.length or 2 * one.noun.size[0]) / 2) * (one.phrase.scale or 1.0)
+        for one in cast.things
+        if one.target is thing and one.round
+    ]
+    share = min(2.0, radii[0] / usual) if radii else 1.0
+    if thing.support is not None and thing.support.noun.family == "furniture":  # a row has to go on it
+        pitch = size[0] + 0.5 * size[2]
+        share = min(share, ROW_ROOM * thing.support.noun.size[0] / (pitch * thing.count))
+    if 0.7 <= share <= 1.5:
+        return size, why
+    return tuple(round(share * edge, 4) for edge in size), "as large against the ball that hits them as usual"
+
+
+def _roomy(thing: Thing, size: tuple[float, ...], cast: Cast, why: str) -> tuple[tuple[float, ...], str]:
+    """A vessel larger than usual where a catalogue's thing, which is as large as it is, goes into it [m]."""
+    loads = [one for one in cast.things if thing in (one.inside, one.into) and one.noun.asset is not None]
+    widest = max(
+        (2 * one.noun.size[0] if len(one.noun.size) < 3 else max(one.noun.size[:2]) for one in loads), default=0
+    )
+    share = widest / (_PLAY * min(_mouth(thing.noun)[:2]))
+    if share <= 1.0:
+        return size, why
+    factor = widest / (_PLAY * min(size[:2]))
+    return tuple(round(max(1.0, factor) * edge, 4) for edge in size), f"so that {loads[0].words} goes into it"
+
+
+def _fitting(size: tuple[float, ...], room: tuple[float, ...], play: float) -> tuple[float, ...]:
     """The usual size, made smaller where it does not go into a vessel with play around it, and up to the rim [m]."""
     round_ = len(size) < 3
     wide = 2 * size[0] if round_ else max(size[:2])
     tall = size[-1] if len(size) > 1 else wide
-    share = min(1.0, _PLAY * min(room[:2]) / wide, room[2] / tall)
+    share = min(1.0, play * min(room[:2]) / wide, room[2] / tall)
     return size if share == 1.0 else tuple(round(edge * share, 4) for edge in size)
+
+
+def _shaped(primitive: str, size: tuple[float, ...], axis: str, factor: float) -> tuple[float, ...]:
+    """The size with one axis longer or shorter: "tall", "long", "thin" [m]."""
+    if primitive == "sphere":
+        raise UserError(f"a ball is as high as it is wide, not {factor:g} times that; say small or large")
+    made = [*size]
+    at = "xyz".index(axis) if len(made) == 3 else (1 if axis in "xz" else 0)
+    made[at] = round(factor * made[at], 4)
+    return tuple(made)
 
 
 _MEANS = {
@@ -168,6 +247,8 @@ def bodies(thing: Thing, cast: Cast, taken: set[str]) -> list[PlanObject]:
 def _mass(thing: Thing, size: tuple[float, ...]) -> float | None:
     """What the prompt says, or the catalogue of a thing as large as its own and of its own material [kg]."""
     mass = thing.phrase.measures.get("mass")
+    if mass is None and thing.phrase.weight is not None:
+        return None
     if mass is None:
         own = thing.phrase.material is None and not thing.phrase.measures and size == thing.noun.size
         return thing.noun.mass if own else None

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from wsim.rules.cast import Thing
-from wsim.rules.grammar import NOT_IN_THIS_ORDER, NotUnderstood
 from wsim.rules.phrases import Action, Phrase, Place
 from wsim.rules.places import common, do, put, where
 from wsim.rules.reader import Reader
+from wsim.rules.tokens import NOT_IN_THIS_ORDER, NotUnderstood
 
 
 def drive(reader: Reader, thing: Thing, action: Action) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import combinations_with_replacement
 
 from wsim.plan.schema import Contact, Objective, Plan, PlanObject
+from wsim.plan.schema.formula import Then
 from wsim.plan.schema.formula_contact import CollidesWith
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.places import SURFACES
@@ -12,6 +13,7 @@ from wsim.rules.scenes.lasting import asked, to_and_fro
 from wsim.rules.scenes.part import Part, fall_time
 
 HARDLY = 0.2  # a restitution below which a ball that falls from 0.5 m comes up by 2 cm
+QUICK = 60.0  # pictures a second, so that each bounce that is counted is seen [1/s]
 SEEN = 3  # bounces that one looks at
 
 
@@ -31,10 +33,18 @@ def bounce(thing: Thing, item: PlanObject, on: PlanObject, part: Part, cast: Cas
     if value < HARDLY:
         choice = f"warning: with a restitution of {value:g} it comes up to {value**2:.1%} of its height"
         cast.assume(thing.words, choice, "the plan asks for what the prompt says")
-    part.duration = max(part.duration, round(time * (1 + 2 * sum(value**k for k in range(1, SEEN + 1))) + 0.5, 1))
+    seen = max(SEEN, thing.times or 0)
+    part.frame_rate = max(part.frame_rate, QUICK if thing.times else 0.0)
+    part.duration = max(part.duration, round(time * (1 + 2 * sum(value**k for k in range(1, seen + 1))) + 0.5, 1))
     sentence = f"{item.name} bounces off {on.name} with a restitution of {value:g}."
     formula = CollidesWith(object=item.name, ref=on.name, restitution=value)
-    return [asked(item.name, sentence, formula), *to_and_fro(thing, item.name, "z", value**2, cast)]
+    often = []
+    if thing.times is not None and thing.times > 1:
+        again = Then(
+            events=(CollidesWith(object=item.name, ref=on.name),) * thing.times, windows=(None,) * (thing.times - 1)
+        )
+        often.append(asked(item.name, f"{item.name} bounces off {on.name} {thing.times} times.", again))
+    return [asked(item.name, sentence, formula), *often, *to_and_fro(thing, item.name, "z", value**2, cast)]
 
 
 def returned(thing: Thing, item: PlanObject, on: PlanObject, other: Thing | None, cast: Cast) -> float:
@@ -79,5 +89,5 @@ def _given(first: Thing, second: Thing | None, a: PlanObject, b: PlanObject) -> 
         by_materials = {}
     else:
         by_materials = {"friction": min(a.material.friction, b.material.friction), "restitution": restitution(a, b)}
-    said = {name: first.said(name, second) for name in SURFACES}
+    said = {name: first.said(name, second) for name in (*SURFACES, "rolling")}
     return {name: value for name, value in said.items() if value is not None and value != by_materials.get(name)}

@@ -10,10 +10,12 @@ from wsim.plan.schema import Objective, PlanObject, Pose, Vec3
 from wsim.plan.schema.formula_place import Reaches
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.materials import material_named
+from wsim.rules.scenes.catch import catcher, lands
 from wsim.rules.scenes.lasting import turns
 from wsim.rules.scenes.part import Part, fall_time, pair_friction, tall, tidy
 from wsim.rules.sizes import bodies
 
+INTO_SPEED = 1.2  # the same where what leaves it is to come down in a vessel [m/s]
 BELT_SPEED, TURN_SPEED = 0.5, 45.0  # [m/s], [deg/s], where the prompt gives none
 MOST_BELT_SPEED = 5.0  # that the prompt may give [m/s]
 RIDE, MOST_WAY = 3.0, 3.0  # how long a belt carries its load [s], and how far [m], if that comes first
@@ -29,19 +31,20 @@ MOST_SPIN = 1080.0  # that the prompt may give [deg/s]
 HELD = 0.5  # of the friction, which going round may take
 
 
-def build_carried(cast: Cast, taken: set[str]) -> Part:
-    """A belt that runs along +X, or a turntable, and what is on it.
+def build_carried(cast: Cast, taken: set[str]) -> list[Part]:
+    """Every belt, which runs along +X, and turntable, and what is on it."""
+    return [_carrier(carrier, cast, taken) for carrier in cast.family("belt", "turntable")]
+
+
+def _carrier(carrier: Thing, cast: Cast, taken: set[str]) -> Part:
+    """One of them.
 
     Raises:
-        UserError: More than one of them, or more on it than fits.
+        UserError: More on it than fits.
     """
     part = Part()
-    carriers = cast.family("belt", "turntable")
-    if not carriers:
-        return part
-    carrier = carriers[0]
-    if len(carriers) > 1 or carrier.count > 1:
-        raise UserError(f"{carriers[-1].words!r}: the builtin planner builds one conveyor or turntable")
+    if carrier.count > 1:
+        raise UserError(f"{carrier.words!r}: the builtin planner builds one such; name each for itself")
     riders = [thing for thing in cast.things if thing.support is carrier]
     for thing in riders:
         if thing.group:
@@ -55,7 +58,7 @@ def build_carried(cast: Cast, taken: set[str]) -> Part:
 def _belt(belt: Thing, riders: list[Thing], part: Part, cast: Cast, taken: set[str]) -> None:
     speed = _belt_speed(belt, riders, cast)
     loads = [(thing, item) for thing in riders for item in bodies(thing, cast, taken)]
-    falls = any("drop" in thing.does for thing in riders)
+    falls = any("drop" in thing.does or thing.into is not None or thing.off for thing in riders)
     runs = all("roll" in thing.does for thing in riders) and bool(riders)
     time, way = _ride(speed, falls, runs, cast)
     widths = [_across(item) for _, item in loads]
@@ -88,16 +91,39 @@ def _belt(belt: Thing, riders: list[Thing], part: Part, cast: Cast, taken: set[s
         _load(thing, item, (x - across / 2 * (not runs), 0.0, HEIGHT), speed, part)
         x -= across + GAP
         _belt_objectives(thing, item, slab, 0.0 if runs else way, part)
-        if "drop" in thing.does:  # tumbling takes it on by about its size
+        if _falls(thing):  # tumbling takes it on by about its size
             gone = way + speed * fall_time(HEIGHT) + 1.5 * across
             part.goes[item.name] = [(round(gone, 3), 0.0, -HEIGHT)]
         part.names.setdefault(id(thing), []).append(item.name)
+        if thing.into is not None:
+            _catch(thing, item, length / 2, speed, part, cast, taken)
+
+
+def _falls(thing: Thing) -> bool:
+    return "drop" in thing.does or thing.into is not None or thing.off
+
+
+def _catch(thing: Thing, item: PlanObject, end: float, speed: float, part: Part, cast: Cast, taken: set[str]) -> None:
+    """A vessel where what leaves the belt's end comes down."""
+    vessel = thing.into
+    assert vessel is not None
+    [made] = bodies(vessel, cast, taken)
+    caught = catcher(thing, made, item, speed, HEIGHT, cast)
+    at = Pose(position=(tidy(end + caught.way), 0.0, 0.0))
+    part.objectives.append(lands(item.name, made.name))
+    part.objects.append(caught.vessel.model_copy(update={"pose": at}))
+    part.names[id(vessel)] = [caught.vessel.name]
 
 
 def _belt_speed(belt: Thing, riders: list[Thing], cast: Cast) -> float:
     given = [one.speed for one in (belt, *riders) if one.speed is not None]
     if len(set(given)) > 1:
         raise UserError(f"{belt.words!r}: what it carries goes as fast as it does; the prompt gives {given} m/s")
+    if not given and any(thing.into is not None for thing in riders):
+        cast.assume(
+            belt.words, f"runs at {INTO_SPEED:g} m/s along +X", "so that what leaves it comes down in its vessel"
+        )
+        return INTO_SPEED
     if not given:
         cast.assume(belt.words, f"runs at {BELT_SPEED:g} m/s along +X", "the prompt gives no speed")
         return BELT_SPEED
@@ -158,7 +184,9 @@ def _belt_objectives(thing: Thing, item: PlanObject, slab: PlanObject, way: floa
         least = round(SHARE * way, 3)
         sentence = f"{name} is carried {least:g} m or more."
         part.objectives.append(Objective(kind="moves", object=name, value=least, direction="front", sentence=sentence))
-    if "drop" in thing.does:
+    if thing.into is not None:
+        return  # it comes down in a vessel
+    if _falls(thing):
         sentence = f"{name} falls onto the ground."
         part.objectives.append(Objective(kind="collides_with", object=name, ref="ground", sentence=sentence))
     else:

@@ -29,11 +29,11 @@ from wsim.plan.schema.formula import Mean
 from wsim.plan.schema.formula_place import GoneBetween, Reaches, StaysWithin, TiltBetween, Upright
 from wsim.plan.schema.nodes import Eventually, Finally, Then
 from wsim.rules.cast import Cast, Thing
-from wsim.rules.grammar import NotUnderstood
 from wsim.rules.lexicon import lexicon
 from wsim.rules.materials import GLASS_LOOK, WATER, material_named
 from wsim.rules.scenes.afloat import APRON, GAP, THINNEST, Block, Site, carries, site_of
 from wsim.rules.scenes.part import Part, tidy
+from wsim.rules.tokens import NotUnderstood
 
 if TYPE_CHECKING:
     from wsim.scene.vehicle_spec import VehicleSpec

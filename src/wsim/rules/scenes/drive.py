@@ -17,9 +17,9 @@ from wsim.plan.schema.formula_motion import Moves
 from wsim.plan.schema.formula_place import Reaches, SpeedBetween, Upright
 from wsim.plan.schema.nodes import Finally, Then
 from wsim.rules.cast import Cast, Thing
-from wsim.rules.grammar import NotUnderstood
 from wsim.rules.scenes.country import Country, Way, hill_on, land, scattered, views
 from wsim.rules.scenes.part import Part
+from wsim.rules.tokens import NotUnderstood
 
 if TYPE_CHECKING:
     from wsim.scene.vehicle_spec import VehicleSpec

@@ -4,37 +4,57 @@ from __future__ import annotations
 
 from wsim.defaults import WALL
 from wsim.errors import UserError
+from wsim.plan.layout.bodies import around
 from wsim.plan.schema import Objective, PlanObject, Relation
 from wsim.plan.schema.formula_contact import CollidesWith
+from wsim.plan.schema.predicates import OVERLAP
 from wsim.rules.cast import Beside, Cast, Thing
 from wsim.rules.places import SIDES
 from wsim.rules.scenes.bounce import bounce, bounces
-from wsim.rules.scenes.motion import ground_object, hit, meet, move, struck, throw_height
-from wsim.rules.scenes.part import Part, fall_time, tall
-from wsim.rules.scenes.tip import tipped
+from wsim.rules.scenes.hit import hit, meet, struck
+from wsim.rules.scenes.legs import on_legs
+from wsim.rules.scenes.motion import ground_object, move, throw_height, top
+from wsim.rules.scenes.part import Part, fall_time, tall, tidy
+from wsim.rules.scenes.tip import on_side, slender, tipped, upended
 from wsim.rules.sizes import bodies
 
 GAP = 0.15  # between neighbours on the ground [m]
 GAP_ABOVE = 0.08  # between neighbours on a table [m]
 ROW_SHARE = 0.5  # of their height, between things in a row: each then reaches the next as it falls
-DROP_HEIGHT = 0.5  # [m]
+_UNDER = ("ALIGN-CENTER-LR", "ALIGN-CENTER-FB")  # with what it is under
+DROP_HEIGHT, HIGH = 0.5, 1.5  # usually, and of what is to bounce often [m]
 
 
-def build_ground(cast: Cast, taken: set[str], scene: Part, behind: str | None = None) -> Part:
-    """Everything that stands on the ground, in a row along Y, or in front of a tank.
+def build_ground(cast: Cast, taken: set[str], scene: Part) -> Part:
+    """Everything that stands on the ground, in a row along Y beside what is there already, or in front of a tank.
 
     Args:
         cast: What the prompt speaks of.
         taken: Names in use; grows.
         scene: What is there already.
-        behind: Name of the tank that the row stands in front of.
     """
     things = [thing for thing in cast.things if thing.place == "ground" and id(thing) not in scene.names]
     part = Part(duration=3.0 if any(_waits(thing) for thing in things) else 1.5, names=scene.names)
     _settle_sides(things, cast)
-    ends = _Ends(behind or next((o.name for o in scene.objects), None), "FRONT-OF" if behind else "LEFT-OF")
+    _part_bridged(things)
+    for thing in things:
+        for beside in thing.beside:
+            if (
+                not any(item.name in scene.names.get(id(beside.ref), []) for item in scene.objects)
+                and id(beside.ref) in scene.names
+            ):
+                raise UserError(
+                    f"{thing.words!r} beside {beside.ref.words!r}: the builtin planner builds nothing there"
+                )
+    ends = _Ends(scene, still=not any(_goes(thing) for thing in things))
+    catches = [thing.into for thing in things if thing.into is not None]
+    for thing in catches:
+        [part.vessels[id(thing)]] = bodies(thing, cast, taken)
+        part.names[id(thing)] = [part.vessels[id(thing)].name]
     # What carries another comes first: its name is needed.
     for thing in sorted(things, key=lambda thing: _depth(thing, [])):
+        if thing in catches:
+            continue
         if thing.target is None and "meet" not in thing.does:
             _place(thing, cast, taken, part, ends)
     for thing in things:
@@ -53,19 +73,29 @@ def _waits(thing: Thing) -> bool:
     return thing.noun.family == "solid" and not {"roll", "slide", "push", "throw", "meet"} & {*thing.does}
 
 
+def _goes(thing: Thing) -> bool:
+    return bool({"roll", "slide", "push", "throw", "meet", "topple"} & {*thing.does})
+
+
 class _Ends:
     """Where rows end: what the next thing without a place of its own stands beside."""
 
-    def __init__(self, ground: str | None, side: str) -> None:
-        self.side = side
-        self.last: dict[int | None, str] = {} if ground is None else {None: ground}
+    def __init__(self, scene: Part, *, still: bool) -> None:
+        tank = any(item.name == "tank" for item in scene.objects)
+        fixed = [item for item in scene.objects if item.pose is not None]
+        self.side = "FRONT-OF" if tank and still and not fixed else "LEFT-OF"
+        first = max(fixed, key=lambda item: around(item).high[1]).name if fixed else "tank" if tank else None
+        self.last: dict[int | None, str] = {} if first is None else {None: first}
+        edge = max((around(item).high[1] for item in fixed), default=0.0)
+        self.clear = tidy(scene.span[1] - edge) if fixed else 0.0  # by which what it carries juts out [m]
 
     def row(self, thing: Thing) -> Relation | None:
         """The row that puts a thing beside the last one on the same support."""
         on = None if thing.support is None else id(thing.support)
         if on not in self.last:
             return None
-        side, gap = (self.side, GAP) if on is None else ("LEFT-OF", GAP_ABOVE)
+        side, gap = (self.side, GAP + self.clear) if on is None else ("LEFT-OF", GAP_ABOVE)
+        self.clear = 0.0 if on is None else self.clear
         return Relation(predicate=side, ref=self.last[on], gap=gap)
 
     def grow(self, thing: Thing, name: str) -> None:
@@ -86,10 +116,22 @@ def _settle_sides(things: list[Thing], cast: Cast) -> None:
     for _ in things:
         for thing in things:
             for beside in _sides(thing):
-                on = beside.ref.support
+                on, own = beside.ref.support, thing.support
+                if own is not None and own.noun.family == "furniture" and on is None and not beside.ref.does:
+                    on = beside.ref.support = own
+                    cast.assume(beside.ref.words, f"on {own.words}", f"{thing.words} is there")
                 if on is not None and thing.support is None and on is not thing and "drop" not in thing.does:
                     thing.support = on
                     cast.assume(thing.words, f"on {on.words}", f"{beside.ref.words} is there")
+
+
+def _part_bridged(things: list[Thing]) -> None:
+    """Set what carries a bridge's ends so far apart that it is as long as it is to be."""
+    for thing in [one for one in things if one.bridges is not None]:
+        assert thing.bridges is not None and thing.support is not None
+        length = thing.phrase.length or thing.phrase.measures.get("x") or thing.noun.size[0]
+        if not _sides(thing.bridges):
+            thing.bridges.beside.append(Beside("LEFT-OF", thing.support, gap=round(length - 2 * OVERLAP, 3)))
 
 
 def _sides(thing: Thing) -> list[Beside]:
@@ -100,7 +142,7 @@ def _depth(thing: Thing, seen: list[Thing]) -> int:
     if thing in seen:
         names = " and ".join(repr(one.words) for one in seen[:2])
         raise UserError(f"{names} cannot stand on each other, or beside each other in a circle")
-    needs = [thing.support, thing.inside, *(beside.ref for beside in thing.beside)]
+    needs = [thing.support, thing.inside, thing.bridges, *(beside.ref for beside in thing.beside)]
     below = [one for one in needs if one is not None and one.target is None]
     return 1 + max((_depth(one, [*seen, thing]) for one in below), default=-1)
 
@@ -115,6 +157,12 @@ def _place(thing: Thing, cast: Cast, taken: set[str], part: Part, ends: _Ends) -
     height = _drop_height(thing, cast, part)
     made = bodies(thing, cast, taken)
     part.names[id(thing)] = [item.name for item in made]
+    if "upright" in thing.manners:
+        made = [upended(item) for item in made]
+    if "on_side" in thing.manners:
+        made = [on_side(item, thing) for item in made]
+    if "topple" in thing.does and thing.arrangement != "stack":
+        made = [slender(thing, item, cast) for item in made]
     if "topple" in thing.does and not _hit(thing, cast):
         made = tipped(thing, made, part, cast)
     for index, item in enumerate(made):
@@ -126,13 +174,17 @@ def _place(thing: Thing, cast: Cast, taken: set[str], part: Part, ends: _Ends) -
         item = move(thing, item, cast, part, below)
         if height is not None and "drop" in thing.does:
             part.goes[item.name] = [(0.0, 0.0, -height)]
-        part.objects.append(item.related(rows + item.relations))
+        item = item.related(rows + item.relations)
+        part.objects += on_legs(thing, item, cast, taken)
+        part.objects += part.caught
+        part.caught = []
         at = part.names[id(thing.inside)][0] if thing.inside is not None else lower
         if bounces(thing):
             surface = next(o for o in [*part.objects, ground_object()] if o.name == (below or "ground"))
             part.objectives += bounce(thing, item, surface, part, cast)
             continue
         part.objectives += _objectives(thing, item, at, last=index == len(made) - 1, cast=cast)
+        part.objectives += _on_both(thing, item.name, part)
 
 
 def _start(thing: Thing, lower: str | None, height: float | None, part: Part, stacked: bool) -> Relation:
@@ -142,10 +194,14 @@ def _start(thing: Thing, lower: str | None, height: float | None, part: Part, st
         vessel = part.names[id(thing.inside)][0]
         if height is not None:
             rim = WALL + next(item.size[2] for item in part.objects if item.name == vessel)
+            rim += top(part.names[id(thing.inside.support)][-1], part) if thing.inside.support is not None else 0.0
             return Relation(predicate="SPAWNED-ABOVE", value=round(rim + height, 6))
         return Relation(predicate="PLACE-IN", ref=vessel)
     if height is not None:
         return Relation(predicate="SPAWNED-ABOVE", ref=lower, value=height)
+    if thing.bridges is not None:
+        other = part.names[id(thing.bridges)][-1]
+        return Relation(predicate="bridge_between_a_and_b", ref=lower, other=other)
     if lower is not None:
         return Relation(predicate="PLACE-ON", ref=lower)
     return Relation(predicate="PLACE-ON-BASE")
@@ -161,6 +217,10 @@ def _in_plane(thing: Thing, made: list[PlanObject], index: int, part: Part, ends
     if thing.arrangement == "row" and index > 0:
         gap = round(ROW_SHARE * tall(item), 3)
         return [Relation(predicate="FRONT-OF", ref=made[index - 1].name, gap=gap)]
+    if thing.bridges is not None:
+        return []
+    if any(beside.predicate == "under" for beside in thing.beside):
+        return []
     sides = _sides(thing) if index == 0 else []
     if not sides:
         # On the middle of what carries it, unless something is there already.
@@ -180,9 +240,10 @@ def _in_plane(thing: Thing, made: list[PlanObject], index: int, part: Part, ends
 
 def _facing(thing: Thing, part: Part) -> list[Relation]:
     return [
-        Relation(predicate=beside.predicate, ref=part.names[id(beside.ref)][0])
+        Relation(predicate=predicate, ref=part.names[id(beside.ref)][0])
         for beside in thing.beside
-        if beside.predicate not in SIDES
+        if beside.predicate not in (*SIDES, "beside")
+        for predicate in (_UNDER if beside.predicate == "under" else (beside.predicate,))
     ]
 
 
@@ -191,7 +252,8 @@ def _drop_height(thing: Thing, cast: Cast, part: Part) -> float | None:
         return throw_height(thing, cast) if thing.support is None else thing.drop_height
     if "drop" not in thing.does:
         return None
-    height = cast.drop_height(thing, DROP_HEIGHT, "what it lands on")
+    usual = DROP_HEIGHT if (thing.times or 0) <= 2 else HIGH
+    height = cast.drop_height(thing, usual, "what it lands on")
     part.duration = max(part.duration, round(2.0 + 2 * fall_time(height), 1))
     return height
 
@@ -230,6 +292,14 @@ def _objectives(thing: Thing, item: PlanObject, lower: str | None, last: bool, c
         cast.assume(thing.words, "nothing is asked of it", f"what is round may stay on {lower} or roll off")
         return []
     return [Objective(kind="stays_on", object=name, ref=lower, sentence=f"{name} stays on {lower}.")]
+
+
+def _on_both(thing: Thing, name: str, part: Part) -> list[Objective]:
+    """Of a bridge: that it stays on what carries its other end, too."""
+    if thing.bridges is None:
+        return []
+    other = part.names[id(thing.bridges)][-1]
+    return [Objective(kind="stays_on", object=name, ref=other, sentence=f"{name} stays on {other}.")]
 
 
 def _hit(thing: Thing, cast: Cast) -> bool:

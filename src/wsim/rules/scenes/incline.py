@@ -6,7 +6,7 @@ import math
 
 from wsim.defaults import GRAVITY
 from wsim.errors import UserError
-from wsim.plan.schema import Objective, PlanObject, Pose, Proxy
+from wsim.plan.schema import Objective, PlanObject, Pose, Proxy, Relation
 from wsim.plan.schema.formula_place import StaysWithin
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.scenes.part import MOST_SPEED, Part, pair_friction, tall, tidy
@@ -21,29 +21,34 @@ PLAY = 0.25  # of its smallest extent, which what rests may be off its place
 START_GAP = 0.001  # between the ramp and what starts on it [m]
 LEAST_WAY, WAY = 0.3, 0.6  # of a ramp's length, which what is on it has before it: at least, and usually
 SAFE = 0.9  # of the way that it has before it, which is asked of it at most
+SMOOTHER, ROUGHER = 0.6, 1.3  # times the friction at which a thing just slides, or just stays
+ASIDE = 0.05  # between what is on a ramp, and to its sides [m]
+CYLINDER = 1 / 3  # the same of a cylinder as the next
 SPHERE = 2 / 7  # of tan(angle): the least friction with which a ball rolls without slipping, and a ball's share of g
 
 
-def build_inclines(cast: Cast, taken: set[str]) -> Part:
-    """The ramp and what is on it; its foot points along +X.
+def build_inclines(cast: Cast, taken: set[str]) -> list[Part]:
+    """Every ramp, and what is on it; its foot points along +X."""
+    return [_incline(ramp, cast, taken) for ramp in cast.family("ramp")]
+
+
+def _incline(ramp: Thing, cast: Cast, taken: set[str]) -> Part:
+    """A ramp and what is on it, side by side.
 
     Raises:
-        UserError: more than one ramp, or more on it than fits.
+        UserError: more on it than fits.
     """
+    if ramp.count > 1:
+        raise UserError(f"{ramp.words!r}: the builtin planner builds one such ramp; name each for itself")
     part = Part()
-    ramps = cast.family("ramp")
-    if not ramps:
-        return part
-    if len(ramps) > 1 or ramps[0].count > 1:
-        raise UserError(f"{ramps[-1].words!r}: the builtin planner builds one ramp")
-    ramp = ramps[0]
-    riders = [thing for thing in cast.things if thing.path is ramp]
-    made = {id(thing): bodies(thing, cast, taken)[0] for thing in riders if thing.count == 1}
-    if len(made) < len(riders):
-        raise UserError(f"{ramp.words!r}: the builtin planner puts single things on a ramp; give one of each")
+    things = [thing for thing in cast.things if thing.path is ramp]
+    for thing in things:
+        if thing.group:
+            raise UserError(f"{thing.words!r}: the builtin planner puts no stack or row on a ramp")
+    riders = [(thing, item) for thing in things for item in bodies(thing, cast, taken)]
     [slab] = bodies(ramp, cast, taken)
-    slab = _long_enough(ramp, slab, list(made.values()), cast)
-    angle = _angle(ramp, slab, [(thing, made[id(thing)]) for thing in riders], cast)
+    slab = _large_enough(ramp, slab, [item for _, item in riders], cast)
+    angle = _angle(ramp, slab, riders, cast)
     turn, (length, _, thick) = math.radians(angle), slab.size
     pose = Pose(
         position=(0.0, 0.0, tidy(length / 2 * math.sin(turn) + thick / 2 * math.cos(turn))),
@@ -54,29 +59,36 @@ def build_inclines(cast: Cast, taken: set[str]) -> Part:
     part.names[id(ramp)] = [slab.name]
     if not riders:
         part.duration = BARE_DURATION
-    across = _across(slab, list(made.values()), ramp)
-    for thing, y in zip(riders, across, strict=True):
-        _rider(thing, made[id(thing)], slab, angle, y, part, cast)
+    across = _places_across(slab, [item for _, item in riders])
+    for (thing, item), y in zip(riders, across, strict=True):
+        _rider(thing, item, slab, angle, y, part, cast)
     return part
 
 
-def _long_enough(ramp: Thing, slab: PlanObject, items: list[PlanObject], cast: Cast) -> PlanObject:
-    """The ramp, longer than usual where what is on it would reach its foot, or be there after a step.
+def _large_enough(ramp: Thing, slab: PlanObject, items: list[PlanObject], cast: Cast) -> PlanObject:
+    """The ramp, longer and wider than usual where what is on it would reach its foot, or its sides.
 
     Raises:
-        UserError: The prompt gives a length on which it has no way to go.
+        UserError: The prompt gives a size on which it has no room.
     """
     length, width, thick = slab.size
+    said = ramp.phrase.measures
     longest = max((_along(item) for item in items), default=0.0)
-    if EDGE + longest + LEAST_WAY * length <= length:
+    wanted = sum(_across(item) for item in items) + ASIDE * (len(items) + 1)
+    if EDGE + longest + LEAST_WAY * length > length:
+        if ramp.phrase.length is not None or "x" in said or ramp.phrase.edges:
+            raise UserError(
+                f"{ramp.words!r}: {length:g} m is too short for what is on it, {longest:g} m long; make it "
+                f"{(EDGE + longest) / (1 - LEAST_WAY):.2g} m or more, or leave its length out"
+            )
+        length = math.ceil(10 * (EDGE + longest + WAY * length)) / 10
+    if items and wanted > width:
+        if "y" in said or ramp.phrase.edges:
+            raise UserError(f"{ramp.words!r} is {width:g} m wide, too narrow for what is on it; give smaller things")
+        width = math.ceil(10 * wanted) / 10
+    if (length, width) == slab.size[:2]:
         return slab
-    if ramp.phrase.length is not None or "x" in ramp.phrase.measures or ramp.phrase.edges:
-        raise UserError(
-            f"{ramp.words!r}: {length:g} m is too short for what is on it, {longest:g} m long; make it "
-            f"{(EDGE + longest) / (1 - LEAST_WAY):.2g} m or more, or leave its length out"
-        )
-    longer = math.ceil(10 * (EDGE + longest + WAY * length)) / 10
-    size = (longer, width, thick)
+    size = (length, width, thick)
     told = " x ".join(f"{edge:g}" for edge in slab.size) + " m"
     cast.assumptions = [one for one in cast.assumptions if (one.subject, one.choice) != (ramp.words, told)]
     cast.assume(ramp.words, " x ".join(f"{edge:g}" for edge in size) + " m", "room for what is on it, and its way")
@@ -85,7 +97,16 @@ def _long_enough(ramp: Thing, slab: PlanObject, items: list[PlanObject], cast: C
 
 def _along(item: PlanObject) -> float:
     """How much of a ramp's length a thing takes up [m]."""
-    return 2 * item.size[0] if item.primitive == "sphere" else item.size[0]
+    return item.size[0] if item.primitive == "box" else 2 * item.size[0]
+
+
+def _across(item: PlanObject) -> float:
+    """How much of its width [m]."""
+    if item.primitive == "box":
+        return item.size[1]
+    lies = item.relation("LIES-ALONG-Y") is not None
+    ends = 2 * item.size[0] if item.primitive == "capsule" else 0.0
+    return item.size[1] + ends if lies else 2 * item.size[0]
 
 
 def _angle(ramp: Thing, slab: PlanObject, riders: list[tuple[Thing, PlanObject]], cast: Cast) -> float:
@@ -97,6 +118,7 @@ def _angle(ramp: Thing, slab: PlanObject, riders: list[tuple[Thing, PlanObject]]
                 f"{ramp.words!r}: {given:g} degrees is outside {FLATTEST:g} to {STEEPEST:g}, the planner's range"
             )
         for thing, item in riders:
+            _suit(thing, item, ramp, slab, given, cast)
             _warn(thing, item, slab, given, cast)
         return given
     angle, why = ROLLING_ANGLE, "the prompt gives no angle"
@@ -107,7 +129,7 @@ def _angle(ramp: Thing, slab: PlanObject, riders: list[tuple[Thing, PlanObject]]
             angle = 5.0 * math.ceil((limit + ABOVE) / 5)
             why = f"steeper than the angle of friction, {limit:.1f} degrees at a friction of {friction:g}"
         elif "roll" in thing.does:
-            rolls = math.degrees(math.atan(friction / SPHERE))
+            rolls = math.degrees(math.atan(friction / _inertia(item)))
             angle = ROLLING_ANGLE if rolls > ROLLING_ANGLE else max(FLATTEST, math.floor(rolls - 1.0))
             if rolls >= angle:
                 why = (
@@ -125,6 +147,27 @@ def _angle(ramp: Thing, slab: PlanObject, riders: list[tuple[Thing, PlanObject]]
     return angle
 
 
+def _suit(thing: Thing, item: PlanObject, ramp: Thing, slab: PlanObject, angle: float, cast: Cast) -> None:
+    """A friction with which a thing does on the ramp what it is to, where the prompt leaves the ramp's surface open."""
+    friction, slope = pair_friction(item, slab, thing.said("friction", ramp)), math.tan(math.radians(angle))
+    if thing.said("friction", ramp) is not None or ramp.phrase.material is not None:
+        return
+    wanted = None
+    if "slide" in thing.does and slope < friction / SMOOTHER:
+        wanted = round(SMOOTHER * slope, 3)
+    elif "roll" in thing.does and _inertia(item) * slope > friction / ROUGHER:
+        wanted = math.ceil(100 * ROUGHER * _inertia(item) * slope) / 100
+    elif "rest" in thing.does and slope > friction / ROUGHER and not {"slide", "roll"} & {*thing.does}:
+        wanted = math.ceil(100 * ROUGHER * slope) / 100
+    if wanted is not None:
+        thing.pairs.append((ramp, "friction", wanted))
+        cast.assume(
+            thing.words,
+            f"a friction of {wanted:g} on the ramp",
+            f"so that it does as it is said to at {angle:g} degrees",
+        )
+
+
 def _warn(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, cast: Cast) -> None:
     friction = pair_friction(item, slab, thing.said("friction", thing.path))
     slope = math.tan(math.radians(angle))
@@ -139,13 +182,10 @@ def _warn(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, cast: 
         cast.assume(thing.words, f"warning: {text} it slips as it rolls", least)
 
 
-def _across(slab: PlanObject, items: list[PlanObject], ramp: Thing) -> list[float]:
+def _places_across(slab: PlanObject, items: list[PlanObject]) -> list[float]:
     """Where each starts across the ramp [m]."""
-    widths = [2 * item.size[0] if item.primitive != "box" else item.size[1] for item in items]
-    room = slab.size[1] - sum(widths)
-    if room < 0.02 * (len(items) + 1):
-        raise UserError(f"{ramp.words!r} is {slab.size[1]:g} m wide, too narrow for what is on it; give smaller things")
-    gap, at, places = room / (len(items) + 1), -slab.size[1] / 2, []
+    widths = [_across(item) for item in items]
+    gap, at, places = (slab.size[1] - sum(widths)) / (len(items) + 1), -slab.size[1] / 2, []
     for width in widths:
         places.append(at + gap + width / 2)
         at += gap + width
@@ -154,11 +194,9 @@ def _across(slab: PlanObject, items: list[PlanObject], ramp: Thing) -> list[floa
 
 def _rider(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, y: float, part: Part, cast: Cast) -> None:
     turn, (length, _, thick) = math.radians(angle), slab.size
-    if "roll" in thing.does and not thing.round:
-        raise UserError(f"{thing.words!r}: the builtin planner rolls balls only")
-    if item.primitive not in ("box", "sphere"):
-        raise UserError(f"{thing.words!r}: the builtin planner puts balls and boxes on a ramp")
-    half = tall(item) / 2
+    item = _turned(thing, item)
+    lies = item.relation("LIES-ALONG-Y") is not None
+    half = item.size[0] if lies else tall(item) / 2 + (item.size[0] if item.primitive == "capsule" else 0.0)
     along = _along(item) / 2
     s, h = -length / 2 + EDGE + along, thick / 2 + half + START_GAP
     assert slab.pose is not None
@@ -168,7 +206,7 @@ def _rider(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, y: fl
         tidy(y),
         tidy(z0 - s * math.sin(turn) + h * math.cos(turn)),
     )
-    rotation = (0.0, angle if item.primitive == "box" else 0.0, 0.0)
+    rotation = (90.0, 0.0, 0.0) if lies else (0.0, angle if item.primitive != "sphere" else 0.0, 0.0)
     speed = thing.speed or 0.0
     velocity = (tidy(speed * math.cos(turn)), 0.0, tidy(-speed * math.sin(turn)))
     pose = Pose(position=position, rotation_deg=rotation)
@@ -177,9 +215,22 @@ def _rider(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, y: fl
             f"{thing.words!r}: {speed:g} m/s is not above 0 and up to {MOST_SPEED:g} m/s, the planner's range"
         )
     rolls = {"rolling": True} if speed and "roll" in thing.does else {}
-    part.posed.append(item.model_copy(update={"pose": pose, "velocity": velocity, **rolls}))
-    part.names[id(thing)] = [item.name]
+    part.posed.append(item.related([]).model_copy(update={"pose": pose, "velocity": velocity, **rolls}))
+    part.names.setdefault(id(thing), []).append(item.name)
     _objective(thing, part.posed[-1], slab, angle, part, cast)
+
+
+def _turned(thing: Thing, item: PlanObject) -> PlanObject:
+    """On its side if it rolls.
+
+    Raises:
+        UserError: It cannot roll.
+    """
+    if "roll" not in thing.does or item.primitive == "sphere":
+        return item
+    if item.primitive == "box":
+        raise UserError(f"{thing.words!r}: the builtin planner rolls balls, barrels and the like, and slides the rest")
+    return item.related([Relation(predicate="LIES-ALONG-Y")])
 
 
 def _objective(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, part: Part, cast: Cast) -> None:
@@ -189,7 +240,7 @@ def _objective(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, p
     room = slab.size[0] - EDGE - _along(item)
     way = round(min(WAY * slab.size[0], SAFE * room), 3)
     if "roll" in thing.does:
-        pull = GRAVITY * math.sin(turn) * (1 - SPHERE)
+        pull = GRAVITY * math.sin(turn) * (1 - _inertia(item))
         sentence = f"{name} rolls down {slab.name}."
         part.objectives.append(Objective(kind="rolls_down", object=name, ref=slab.name, value=way, sentence=sentence))
     elif {"slide", "push"} & {*thing.does}:
@@ -212,6 +263,11 @@ def _objective(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, p
         beyond = (speed + pull * time) * math.cos(turn) * (part.duration - time)
         way = slab.size[0] * math.cos(turn) + beyond
         part.goes[name] = [(round(way, 3), 0.0, round(-slab.size[0] * math.sin(turn), 3))]
+
+
+def _inertia(item: PlanObject) -> float:
+    """I / (I + m r^2): the share of its pull that turns it."""
+    return SPHERE if item.primitive == "sphere" else CYLINDER
 
 
 def _rest(item: PlanObject, slab: PlanObject) -> list[Objective]:

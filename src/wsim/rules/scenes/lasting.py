@@ -51,13 +51,14 @@ def turns(name: str, rate: float) -> Objective:
     return asked(name, f"{name} turns at {rate:g} degrees a second.", formula)
 
 
-def leans(name: str, angle: float, most: float, words: str) -> Objective:
-    """A plank goes down at its front by an angle [deg], which there is room for up to another.
+def leans(name: str, angle: float, most: float, words: str, sign: float = 1.0) -> Objective:
+    """A plank goes down at its front, or its back with a sign of -1, by an angle [deg], with room up to another.
 
     Raises:
         UserError: there is not that much room.
     """
     if not 0.0 < angle < most:
         raise UserError(f"{words!r}: {angle:g} degrees is not above 0 and below {most:.3g}, where it is on the ground")
-    formula = Eventually(of=TiltBetween(object=name, axis="x", low=angle, high=90.0))
+    low, high = sorted((sign * angle, sign * 90.0))
+    formula = Eventually(of=TiltBetween(object=name, axis="x", low=low, high=high))
     return asked(name, f"{name} tilts by {angle:g} degrees or more.", formula)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from wsim.defaults import GRAVITY
+from wsim.plan.layout.bodies import around
 from wsim.plan.schema import CameraPlan, Contact, Joint, Objective, PlanObject, Vec3
 
 MOST_SPEED = 50.0  # that the prompt may give [m/s]
@@ -33,6 +34,9 @@ class Part:
         surface: Height that the side camera looks across [m].
         cameras: Its own, where the usual two do not show it.
         frame_rate: That it is to be recorded at [1/s]; 0 where it does not matter.
+        vessels: What is to catch something, by the thing's identity, without a place.
+        caught: The same, with the rows that say where, as what it catches goes.
+        hung: Parts that are set beside all the rest once that is laid out.
         goes: From its start to where else an object comes, which the cameras are to show, too [m].
     """
 
@@ -48,6 +52,9 @@ class Part:
     goes: dict[str, list[Vec3]] = field(default_factory=dict)
     cameras: list[CameraPlan] = field(default_factory=list)
     frame_rate: float = 0.0
+    hung: list[Part] = field(default_factory=list)
+    vessels: dict[int, PlanObject] = field(default_factory=dict)
+    caught: list[PlanObject] = field(default_factory=list)
 
     def add(self, other: Part) -> None:
         """Take in another part."""
@@ -63,6 +70,23 @@ class Part:
         self.frame_rate = max(self.frame_rate, other.frame_rate)
         self.spacing = self.spacing or other.spacing
         self.surface = self.surface if self.surface is not None else other.surface
+
+    def shifted(self, y: float) -> Part:
+        """The part moved along Y [m]: all of it that has a pose."""
+        return replace(self, objects=[_moved(o, y) for o in self.objects], posed=[_moved(o, y) for o in self.posed])
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """From and to where along Y its objects with a pose reach [m]."""
+        boxes = [around(item) for item in (*self.objects, *self.posed) if item.pose is not None]
+        return min((box.low[1] for box in boxes), default=0.0), max((box.high[1] for box in boxes), default=0.0)
+
+
+def _moved(item: PlanObject, y: float) -> PlanObject:
+    if item.pose is None or not y:
+        return item
+    at = item.pose.position
+    return item.model_copy(update={"pose": item.pose.model_copy(update={"position": (at[0], tidy(at[1] + y), at[2])})})
 
 
 def times(direction: Vec3, speed: float) -> Vec3:

@@ -12,9 +12,9 @@ from wsim.plan.schema.formula_contact import TouchesOnly
 from wsim.plan.schema.formula_place import GoneBetween, Reaches, StaysWithin, Upright
 from wsim.plan.schema.nodes import Always, Finally, Then
 from wsim.rules.cast import Cast
-from wsim.rules.grammar import NotUnderstood
 from wsim.rules.scenes.office import ROUTE, cameras, check_way, office
 from wsim.rules.scenes.part import Part
+from wsim.rules.tokens import NotUnderstood
 
 SPEED, LEAST_SPEED, MOST_SPEED = 0.8, 0.2, 0.9  # [m/s]: usual, and what the prompt may give
 SLOWER, SETTLES, STANDS = 1.15, 5.0, 2.0  # corners take time; to come to stand; and for how long it stands [s]

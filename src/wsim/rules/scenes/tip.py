@@ -6,12 +6,13 @@ import math
 
 from wsim.defaults import GRAVITY
 from wsim.errors import UserError
-from wsim.plan.schema import PlanObject
+from wsim.plan.schema import PlanObject, Proxy, Relation
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.scenes.part import Part, tall, tidy
 
 SPARE = 2.0  # of the energy that lifts the middle over the edge, which the push gives
-SLIMMEST = 1.5  # height against depth, below which a thing slides or rocks back rather than tips
+SLIM, SLENDER, HIGHER = 2.0, 6.0, 1.5  # height against depth of what is made to fall over; against its usual extent
+SLIMMEST = 1.3  # height against depth, below which a thing slides or rocks back rather than tips
 
 
 def tipped(thing: Thing, made: list[PlanObject], part: Part, cast: Cast) -> list[PlanObject]:
@@ -20,6 +21,7 @@ def tipped(thing: Thing, made: list[PlanObject], part: Part, cast: Cast) -> list
     Raises:
         UserError: A row of them is too low for one to reach and tip the next; or they are round.
     """
+    made = [upended(item) for item in made] if thing.arrangement != "stack" else made
     if any(item.primitive not in ("box", "cylinder") for item in made) or thing.noun.lies:
         raise UserError(
             f"{thing.words!r}: the builtin planner tips boxes and what stands upright; say what else hits it"
@@ -41,6 +43,45 @@ def tipped(thing: Thing, made: list[PlanObject], part: Part, cast: Cast) -> list
     cast.assume(thing.words, f"a push to +X, {what}{math.degrees(rate):.3g} degrees a second about its lower edge", why)
     part.goes[made[-1].name] = [(round(height, 3), 0.0, -height)]
     return [*pushed, *made[len(falling) :]]
+
+
+def slender(thing: Thing, item: PlanObject, cast: Cast) -> PlanObject:
+    """A box or a cylinder that is to fall over, and whose size is open: high enough for its depth to do so."""
+    said = thing.phrase.length or thing.phrase.measures.keys() - {"mass", "density"} or thing.phrase.edges
+    if said or thing.noun.asset is not None or item.primitive not in ("box", "cylinder") or thing.noun.lies:
+        return item
+    if tall(item) >= SLIM * _deep(item):
+        return item
+    high = round(HIGHER * max(item.size), 3)
+    deep = round(high / SLENDER, 3)
+    size = (deep, item.size[1], high) if item.primitive == "box" else (deep / 2, high)
+    cast.assumptions = [one for one in cast.assumptions if one.subject != thing.words or " x " not in one.choice]
+    choice = " x ".join(f"{edge:g}" for edge in size) + " m"
+    cast.assume(thing.words, choice, "high against its depth, or it would slide rather than fall over")
+    return item.model_copy(update={"construction": Proxy(primitive=item.primitive, size=size)})
+
+
+def upended(item: PlanObject) -> PlanObject:
+    """A plank, a book or the like on its end: its longest edge upright, its shortest along X."""
+    if item.primitive != "box" or item.size[2] >= max(item.size[:2]):
+        return item
+    thin, middle, long = sorted(item.size)
+    size = (thin, middle, long)
+    return item.model_copy(update={"construction": Proxy(primitive="box", size=size)})
+
+
+def on_side(item: PlanObject, thing: Thing) -> PlanObject:
+    """A cylinder, or what stands upright, on its side.
+
+    Raises:
+        UserError: It has no side to lie on.
+    """
+    if item.primitive in ("cylinder", "capsule"):
+        return item.related([Relation(predicate="LIES-ALONG-Y")])
+    if item.primitive != "box":
+        raise UserError(f"{thing.words!r}: a ball has no side to lie on")
+    x, y, z = item.size
+    return item.model_copy(update={"construction": Proxy(primitive="box", size=(z, y, x))})
 
 
 def _deep(item: PlanObject) -> float:

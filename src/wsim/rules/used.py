@@ -1,0 +1,77 @@
+"""What a prompt says of a thing and no scene would use, which is refused rather than dropped."""
+
+from __future__ import annotations
+
+from wsim.rules.cast import CARRIERS, Beside, Thing
+from wsim.rules.tokens import NotUnderstood
+
+_GOES = {"roll", "slide", "push", "throw", "meet", "ride", "run", "patrol", "drive", "cross"}
+
+
+def posed(thing: Thing) -> bool:
+    """Whether it has a place of its own in its part of the scene, which rows do not give."""
+    on = thing.support.noun.family if thing.support is not None else ""
+    own = thing.noun.family in ("pendulum", "seesaw", "ramp", "belt", "turntable")
+    return own or on in ("seesaw", "belt", "turntable") or thing.path is not None or thing.rod is not None
+
+
+def check_used(thing: Thing, struck: bool) -> None:
+    """Refuse what no scene would use, rather than drop it.
+
+    Args:
+        thing: Of the cast.
+        struck: Whether something hits it.
+
+    Raises:
+        NotUnderstood: It says something that nothing comes of.
+    """
+    for beside in thing.beside:
+        if beside.loose and (posed(thing) or posed(beside.ref)):
+            beside.predicate = "beside"  # the parts of a scene are side by side
+    for given, problem in (*_adjectives(thing), *_manners(thing, struck)):
+        if given:
+            raise NotUnderstood([thing.words], problem)
+
+
+def _sides(thing: Thing) -> list[Beside]:
+    """The rows that say where it is; neighbours in water are its row there."""
+    return [beside for beside in thing.beside if beside.predicate != "beside"]
+
+
+def _adjectives(thing: Thing) -> tuple[tuple[bool, str], ...]:
+    phrase, family = thing.phrase, thing.noun.family
+    moving = thing.target is not None or bool(_GOES & {*thing.does})
+    carries = family in CARRIERS or (thing.support is not None and thing.support.noun.family == "belt")
+    placed = thing.target or thing.meets or thing.path or thing.rod or thing.inside or thing.place == "water"
+    ill = family in ("pendulum", "seesaw") or (thing.support is not None and thing.support.noun.family == "seesaw")
+    strange = bool(set(phrase.measures) - {"x", "z", "mass", "radius", "diameter"})
+    return (
+        (phrase.angle is not None and family not in ("ramp", "pendulum"), "inclines a ramp, but not this"),
+        (phrase.filled, "fills a tank, a bucket or a bowl with water, but not this"),
+        (thing.speed is not None and not moving and not carries, "needs to be told how this moves"),
+        (thing.spin is not None and family != "turntable", "turns a turntable at a rate, but not this"),
+        (bool(_sides(thing)) and bool(placed or ill), "cannot place this beside something, with what else it does"),
+        (family == "pendulum" and strange, "cannot give a pendulum this measure"),
+        (phrase.scale is not None and phrase.length is not None, "takes a size or a length, not both"),
+        ({"mass", "density"} <= set(phrase.measures), "takes a mass or a density, not both"),
+    )
+
+
+def _manners(thing: Thing, struck: bool) -> tuple[tuple[bool, str], ...]:
+    does, said, family = {*thing.does}, thing.manners, thing.noun.family
+    hits = thing.target is not None or thing.meets is not None or "meet" in does or struck
+    flat = thing.side not in (None, "middle") and family != "seesaw"
+    on = thing.support.noun.family if thing.support is not None else ""
+    return (
+        ("head_on" in said and not hits, "needs to be told what this hits head on"),
+        ("from_rest" in said and (thing.speed is not None or (thing.path is None and bool(_GOES & does))),
+         "lets things start from rest on a ramp, but not this"),
+        ("still" in said and bool(_GOES & does), "cannot let this move and be still"),
+        ("upright" in said and thing.noun.primitive == "sphere", "stands what has ends upright, but not this"),
+        ("to_and_fro" in said and not {"swing", "bounce"} & does, "lets what swings go to and fro, but not this"),
+        ("again" in said and "bounce" not in does, "lets what bounces do it again, but not this"),
+        ("level" in said and "seesaw" not in (family, on), "keeps a seesaw level, but not this"),
+        ("in_turn" in said and "topple" not in does, "lets things fall one after another, but not this"),
+        (thing.times is not None and "bounce" not in does, "counts bounces, but not this"),
+        (flat and on != "seesaw", "puts things at the ends of a seesaw, but not of this"),
+    )  # fmt: skip
