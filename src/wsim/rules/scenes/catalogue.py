@@ -5,13 +5,14 @@ from __future__ import annotations
 from wsim.assets import get
 from wsim.plan.schema import External, FromAsset, Objective, PlanObject, Registration, Relation
 from wsim.plan.schema.formula_contact import LiesOn, SupportedBy
-from wsim.plan.schema.formula_place import ContainedIn
+from wsim.plan.schema.formula_place import ContainedIn, StaysInside
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.lexicon import Noun, lexicon
 from wsim.rules.scenes.bounce import bounces
 
 _ANCHORS = ("seat", "shelf_3", "shelf_2", "top")  # where things stand on one, in the order of preference
 WOODS = ("oak", "pine")
+ON_FLOOR = 0.005  # of a catalogue's thing, whose place is the middle of its underside: that is on the floor [m]
 _LOWER = 0.01  # that an anchor must be below the highest point to be named [m]
 
 
@@ -53,6 +54,8 @@ def itself(item: PlanObject, thing: Thing, cast: Cast) -> PlanObject | None:
     )
     moves = any(item.velocity) or item.angular_velocity_deg or item.rolling
     rubs = any(name != "friction" for _, name, _ in thing.pairs)
+    if "topple" in thing.does:
+        return None  # a box of its size falls over as surely as it is pushed to, whatever is under its feet
     if not own or said or moves or rubs or bounces(thing) or noun.asset is None or thing.bridges is not None:
         return None
     if any(beside.predicate == "under" and beside.ref is thing for one in cast.things for beside in one.beside):
@@ -82,15 +85,20 @@ def _is_of(word: str | None, noun: Noun) -> bool:
 def as_they_are(objectives: list[Objective], objects: list[PlanObject]) -> list[Objective]:
     """The objectives, said of the catalogue's things in ways that hold of these.
 
-    Of what is in one of its vessels, or is one in a vessel, it is asked that it lies there: only of tanks is the room
-    known. Of what stands on a seat or a board, below the highest point, that it is borne by what it stands on.
+    Of what is in one of its vessels it is asked that it lies there: only of tanks is the room known. Of what stands on
+    a seat or a board, below the highest point, that it is borne by what it stands on.
     """
     own = {item.name: item for item in objects if item.primitive == "asset"}
     made = []
     for one in objectives:
         vessel = _vessel(one)
-        if vessel is not None and {vessel, one.object} & {*own}:
+        if vessel is not None and vessel not in own and one.object in own:
+            made.append(_asked(one, StaysInside(object=one.object, ref=vessel, within=ON_FLOOR)))
+        elif vessel in own and vessel is not None:
             made.append(_asked(one, LiesOn(object=one.object, ref=vessel)))
+            if _falls(one.object, objects):
+                sentence = f"{one.object} falls onto {vessel}."
+                made.append(Objective(kind="collides_with", object=one.object, ref=vessel, sentence=sentence))
         elif one.kind == "stays_on" and one.ref in own and _anchor(own[one.ref]) is not None:
             made.append(_asked(one, SupportedBy(object=one.object, ref=one.ref)))
         else:
@@ -98,8 +106,13 @@ def as_they_are(objectives: list[Objective], objects: list[PlanObject]) -> list[
     return made
 
 
-def _asked(objective: Objective, formula: LiesOn | SupportedBy) -> Objective:
+def _asked(objective: Objective, formula: LiesOn | SupportedBy | StaysInside) -> Objective:
     return Objective(kind="formula", object=objective.object, sentence=objective.sentence, formula=formula)
+
+
+def _falls(name: str, objects: list[PlanObject]) -> bool:
+    """Whether it starts in the air, with nothing but its weight to move it."""
+    return any(o.name == name and o.relation("SPAWNED-ABOVE") is not None and not any(o.velocity) for o in objects)
 
 
 def _vessel(objective: Objective) -> str | None:
