@@ -11,6 +11,7 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
+from wsim.geometry.rotations import line_of_sight
 from wsim.recording import read
 from wsim.scene import Scene
 from wsim.scene.describe import describe
@@ -207,3 +208,18 @@ def test_a_second_camera_stays_on_its_side(tmp_path):
     way = np.subtract(top.target, top.eye)
     assert -way[2] / np.linalg.norm(way) > 0.99
     assert math.dist(top.eye, top.target) < 5.0
+
+
+def test_what_lies_still_in_the_picture_is_not_lost_for_what_moves(tmp_path):
+    """A marble that is too small to be told, and a block beside its way: both are bodies that may be asked about."""
+    scene = a_world(1.0)
+    scene.sphere("marble", radius=0.01, position=(-0.1, 0.0, 0.01), velocity=(0.2, 0.0, 0.0))
+    scene.box("block", size=(0.1, 0.1, 0.1), position=(0.0, 1.2, 0.05))
+    a_camera(scene, eye=(0.0, -3.0, 1.0), target=(0.0, 0.6, 0.0))
+    world, motion = recorded(scene, tmp_path)
+    (camera,) = Framing(world, motion).cameras()
+    assert camera != world.cameras[0]  # which showed a marble of 5 pixels
+    right, ahead = line_of_sight(camera.eye, camera.target, camera.up)
+    way = np.subtract((0.0, 1.2, 0.05), camera.eye)
+    assert way @ ahead > 0.0
+    assert abs(way @ right) < math.tan(math.radians(camera.fov / 2)) * (way @ ahead)

@@ -42,8 +42,8 @@ class Framing:
     A camera is kept as it is if it is fixed, or if it shows what the run is about: each main subject (`subjects`) for
     nine tenths of the time that matters, at a useful size and not hidden, about as well as the best view that is tried.
     Else it is turned, moved or made to follow; the first one to the best view of all, the others where that shows
-    enough from the side on which they are. A world without cameras gets the best view, and one that stands and sees all
-    of the way if that goes along.
+    enough from the side on which they are. What could move and was in the picture of one stays in that of one. A world
+    without cameras gets the best view, and one that stands and sees all of the way if that goes along.
 
     Args:
         world: What the stage states.
@@ -72,7 +72,17 @@ class Framing:
             return list(given)
         if not given:
             return self._own(Camera(prim=DEFAULT_CAMERA, eye=(1.0, 0.0, 0.0), target=(0.0, 0.0, 0.0)))
-        return [camera if camera.fixed else self._kept_or_better(camera, k == 0) for k, camera in enumerate(given)]
+        framed = [camera if camera.fixed else self._kept_or_better(camera, k == 0) for k, camera in enumerate(given)]
+        self._needed = self._ever(given) & ~self._ever(framed)
+        if self._needed.any() and not given[0].fixed:
+            framed[0] = self._kept_or_better(given[0], True)
+        return list(given) if (self._ever(given) & ~self._ever(framed)).any() else framed
+
+    def _ever(self, cameras: Sequence[Camera]) -> Array:
+        """(S,) which of the subjects that could move are in the picture of some camera at some time."""
+        assert self._scenario is not None
+        able = np.array([subject.able for subject in self._scenario.subjects])
+        return np.asarray(able & np.any([shown(camera, self._scenario).ever for camera in cameras], axis=0))
 
     def _prepare(self, found: list[Subject]) -> None:
         """Thin the frames out, and weigh them."""
@@ -94,6 +104,7 @@ class Framing:
         )  # fmt: skip
         thin = [replace(each, points=each.points[frames]) for each in found]
         self._scenario = Scenario(self.world, moved, thin, weight / weight.sum(), np.isin(frames, stills))
+        self._needed = np.zeros(len(thin), dtype=bool)  # subjects that a view is not to lose
 
     def _own(self, lens: Camera) -> list[Camera]:
         assert self._scenario is not None
@@ -145,6 +156,7 @@ class Framing:
         """The view that shows most, and what it is worth; what hides what is looked at in the best ones only."""
         assert self._scenario is not None
         found = [(shown(view, self._scenario), view) for view in tried]
+        found = [each for each in found if each[0].ever[self._needed].all()] or found
         rated = sorted(
             ((self._lit(view) * seen.worth(self._scenario), seen, view) for seen, view in found),
             key=lambda each: -each[0],

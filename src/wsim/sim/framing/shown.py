@@ -73,6 +73,11 @@ class Shown:
         """(F, S) whether a subject is in the picture, and no speck."""
         return np.asarray((self.inside >= IN) & (self.size >= USEFUL))
 
+    @property
+    def ever(self) -> Array:
+        """(S,) whether any of a subject is in the picture at any time."""
+        return np.asarray((self.inside > 0.0).any(axis=0))
+
     def worth(self, scenario: Scenario, hidden: Array | float = 0.0) -> float:
         """How good the view is, of 1.
 

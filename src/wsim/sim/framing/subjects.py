@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 Array = np.ndarray
 MOST = 40  # objects of one sort that are looked at; of more, some
 MOVES = 0.05  # of its size: what goes no farther stands still
-MAIN, BESIDE, STANDING = 1.0, 0.25, 0.1  # weights of what is asked about, of what else moves, of what stands there
+# Weights of what is asked about, of what else moves, of what stands there, and of what could move and does not.
+MAIN, BESIDE, STANDING, IDLE = 1.0, 0.25, 0.1, 0.0
 ENDS = np.concatenate([np.eye(3), -np.eye(3)])
 CORNERS = np.array(list(product((0.0, 1.0), repeat=3)))
 
@@ -36,6 +37,7 @@ class Subject:
         parts: Prims of what it is made of, itself among them.
         weight: How much it matters that it is seen; those of all subjects sum up to about 1.
         main: Whether the run is about it.
+        able: Whether it could move.
         body: Index of the body that a camera follows, which goes with it; None: it has none.
     """
 
@@ -45,6 +47,7 @@ class Subject:
     main: bool
     body: int | None = None
     parts: tuple[str, ...] = ()
+    able: bool = True
 
     @property
     def centre(self) -> Array:
@@ -93,8 +96,12 @@ def subjects(world: World, motion: Motion, named: Sequence[str] = ()) -> list[Su
     tied = _tied(world, {each.prim for each in main})
     main += [each for each in (*able, *standing) if each.prim in tied]
     mains = {each.prim for each in main}
-    beside, around = ([each for each in group if each.prim not in mains] for group in (movers, standing))
-    return [*_weighed(main, MAIN, True), *_weighed(beside, BESIDE, False), *_weighed(around, STANDING, False)]
+    beside, around, idle = ([each for each in group if each.prim not in mains] for group in (movers, standing, able))
+    idle = [each for each in idle if not each.moves]
+    return [
+        *_weighed(main, MAIN, True), *_weighed(beside, BESIDE, False), *_weighed(around, STANDING, False),
+        *_weighed(idle, IDLE, False),
+    ]  # fmt: skip
 
 
 def _tied(world: World, prims: set[str]) -> set[str]:
@@ -152,7 +159,7 @@ def _statics(world: World, frames: int) -> list[Subject]:
         if shapes and not any(is_ground(shape) for shape in shapes):
             local = np.concatenate([placed(outline(shape), shape.position, shape.rotation) for shape in shapes])
             corners = local.min(axis=0) + CORNERS * np.ptp(local, axis=0)
-            found.append(Subject(prim, np.broadcast_to(corners, (frames, 8, 3)), 0.0, False, parts=(prim,)))
+            found.append(Subject(prim, np.broadcast_to(corners, (frames, 8, 3)), 0.0, False, parts=(prim,), able=False))
     return found
 
 
