@@ -126,3 +126,24 @@ def test_a_blow_is_asked_for_as_such() -> None:
     for asked in ({"kind": "collides_with"}, {"kind": "rests_on"}):
         objectives = [{**asked, "object": "ball", "ref": "ground"}]
         assert missing(plan(words, prompt, objectives=objectives)) == []
+
+
+@pytest.mark.parametrize(
+    ("formula", "shows"),
+    [
+        ("collides_with(ball, ground)", True), ("not collides_with(ball, ground)", False),
+        ("not never_touches(ball, ground)", False), ("collides_with(ball, ground) or settles(ball)", False),
+        ("touches(ball, ground) or collides_with(ball, ground, restitution 0.5)", True),
+        ("eventually (touches(ball, ground) and speed_between(ball, 1, 2))", True),
+        ("not (not touches(ball, ground) or not speed_between(ball, 1, 2))", True),
+    ],
+)  # fmt: skip
+def test_what_is_denied_or_one_of_several_ways_shows_nothing(formula: str, shows: bool) -> None:
+    prompt, words = "A ball hits the ground.", [{"words": "hits", "by": [0]}]
+    objectives = [{"kind": "formula", "object": "ball", "sentence": formula}]
+    assert (missing(plan(words, prompt, objectives=objectives)) == []) == shows
+
+
+def test_a_clause_has_words() -> None:
+    with pytest.raises(UserError, match="words"):
+        plan([{"words": "", "by": [0]}])

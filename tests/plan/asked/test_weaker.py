@@ -20,6 +20,7 @@ def said(sentence: str) -> dict[str, Any]:
 
 REACHES = said("finally (reaches(ball, (0.6, 0, 1.2), within 10 cm))")
 RANGE = said("finally (gone_between(ball, x, 0.5 m, 0.7 m))")
+OTHER = {**BALL, "name": "other", "position": [0, 2, 2], "velocity": [9, 0, 0]}
 UPRIGHT = said("not upright(ball, 10 deg)")
 
 
@@ -59,6 +60,21 @@ WEAKER: dict[str, tuple[Plan, Plan, str]] = {
     ),
     "a narrower one under a not": (
         plan(UPRIGHT), plan(said("not upright(ball, 5 deg)")), "within of upright ball is 5, where it was 10",
+    ),
+    "an easier alternative": (
+        plan(), plan(said("moves(ball, 0.5 m) or moves(ball, 0.1 m)")), "least of moves ball is 0.1, where it was 0.5",
+    ),
+    "an alternative that asks nothing of it": (
+        plan(REACHES), plan(said("finally (reaches(ball, (0.6, 0, 1.2), within 10 cm)) or speed_between(ball, 0, 9)")),
+        "within of reaches ball is open in an alternative, where it was 0.1",
+    ),
+    "another thing": (
+        plan(), plan({**MOVES, "object": "other"}, objects=[GROUND, BALL, OTHER]),
+        "'flies' was asked of ball, and is no more",
+    ),
+    "another direction": (
+        plan({**MOVES, "direction": "front"}), plan({**MOVES, "direction": "back"}),
+        "ball moves back, where it was front",
     ),
 }  # fmt: skip
 

@@ -140,6 +140,19 @@ RIGHT: dict[str, dict[str, Any]] = {
         "objects": [A],
         "objectives": [{"kind": "topples", "object": "box"}, formula("always[0, 1] (touches(box, ground))")],
     },
+    "touches what it did not touch before": {
+        "objects": [A, B],
+        "objectives": [formula("always[0, 0.4] (never_touches(box, other))"),
+                       formula("eventually[0.4, 1.5] (touches(box, other))")],
+    },
+    "topples from upright": {
+        "objects": [A],
+        "objectives": [formula("always[0, 0.4] (upright(box, 10 deg))"), {"kind": "topples", "object": "box"}],
+    },
+    "one or the other": {
+        "objects": [A, B],
+        "objectives": [formula("never_touches(box, other) or eventually (touches(box, other))")],
+    },
     "pushed off what it is on": {
         "objects": [box("box", [0, 0, 0.9]), TABLE], "objectives": [RESTS], "prompt": "A box is pushed off a table.",
     },

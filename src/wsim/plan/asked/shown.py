@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from wsim.plan.schema.formula import Predicate
+
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Sequence, Set
 
     from wsim.plan.schema import Objective
+    from wsim.plan.schema.nodes import Node
 
 BLOWS = frozenset(("hit", "strike", "collide", "crash", "smash", "ram", "bump", "slam", "kick", "slap"))
 _BLOWS = "collides_with touches pushes topples stops_before bounces_to climbs_to rests_on"
 _FALLS = """collides_with rests_on falls_freely drops topples submerged sinks floats flies bounces_to counts
 contained_in stays_inside tilts tilts_to stays_on"""
 _TURNS = "spin_between own_spin_between turned_between rolls"
-_OVER = "topples upright drops tilt_between tilts tilts_to"
+_OVER = "topples not_upright drops tilt_between tilts tilts_to"
 _STOPS = "settles speed_between stops_before stays_within rests_on"
 _SHOW = (  # verbs of one meaning alone, and the kinds of objective and predicates that show it
     ("float", "floats level_in"),
@@ -35,10 +38,20 @@ _SHOW = (  # verbs of one meaning alone, and the kinds of objective and predicat
 SHOWN_BY = {base: frozenset(names.split()) for verbs, names in _SHOW for base in verbs.split()}
 
 
-def names_of(objective: Objective) -> set[str]:
-    """The kind of an objective, and the predicates of its formula."""
-    nodes = objective.formula.walk() if objective.formula is not None else ()
-    return {objective.kind, *(str(getattr(node, "op", "")) for node in nodes)}
+def shows(objective: Objective, names: Set[str]) -> bool:
+    """Whether an objective asks for one of some kinds or predicates; a denied one has `not_` before its name.
+
+    Of alternatives each must: the others need not come true.
+    """
+    return objective.kind in names or (objective.formula is not None and _asserts(objective.formula, names, False))
+
+
+def _asserts(node: Node, names: Set[str], denied: bool) -> bool:
+    op = str(getattr(node, "op", ""))
+    if isinstance(node, Predicate):
+        return (f"not_{op}" if denied else op) in names
+    parts = [_asserts(part, names, denied ^ (op == "not")) for part in node.parts()]
+    return all(parts) if op == ("and" if denied else "or") else any(parts)
 
 
 def is_blow_shown(base: str, objectives: Sequence[Objective]) -> bool:
@@ -46,4 +59,4 @@ def is_blow_shown(base: str, objectives: Sequence[Objective]) -> bool:
     if base not in BLOWS or not objectives:
         return True
     several = len({each.object for each in objectives}) > 1
-    return several or any(names_of(each) & SHOWN_BY[base] for each in objectives)
+    return several or any(shows(each, SHOWN_BY[base]) for each in objectives)

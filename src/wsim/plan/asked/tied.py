@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from wsim.plan.asked.demands import REQUIRED, Demand, demands, tokens
-from wsim.plan.asked.shown import SHOWN_BY, names_of
+from wsim.plan.asked.shown import SHOWN_BY, shows
 from wsim.plan.asked.stated import FIELDS, asks, close, values
 from wsim.plan.asked.vocabulary import CAUSES
 from wsim.plan.schema.clause import OF_JOINTS, WHOLE, Clause
@@ -41,7 +41,7 @@ def _evidence(plan: Plan, demand: Demand) -> Iterator[int | str]:
         yield from _of_number(plan, demand)
         return
     shown = SHOWN_BY.get(demand.base)
-    numbers = [k for k, each in enumerate(plan.objectives) if shown is None or names_of(each) & shown]
+    numbers = [k for k, each in enumerate(plan.objectives) if shown is None or shows(each, shown)]
     yield from numbers
     if not numbers and demand.base in CAUSES:
         for item in plan.objects:

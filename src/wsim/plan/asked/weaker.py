@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from wsim.plan.asked.covered import gaps, spans
 from wsim.plan.asked.demands import REQUIRED, Demand, demands
-from wsim.plan.asked.shown import SHOWN_BY, names_of
+from wsim.plan.asked.shown import SHOWN_BY, shows
 from wsim.plan.asked.tied import tied
 from wsim.plan.schema.formula import Predicate
 
@@ -19,17 +20,22 @@ WIDER = 0.2  # share by which a limit may be widened: what a first guess of a nu
 _MORE_IS_WEAKER = ("tolerance", "within", "radius")
 _LESS_IS_WEAKER = ("value", "least")
 Limits = dict[tuple[str, ...], list[tuple[str, float]]]
+_Room = tuple[tuple[str, ...], str, float]  # what is asked of what, its field, and the room that it leaves
 
 
 def weakened(old: Plan, new: Plan) -> list[str]:
     """What a changed plan no longer asks for, a line each; empty for one that asks for as much.
 
     Objectives may be replaced and numbers moved that the prompt leaves open. Each clause of the prompt stays tied, by
-    as many objectives as before and of a kind that shows its verb; limits widen by a share of 0.2 at most; the prompt's
-    own numbers stay; nothing that a clause or an objective names goes.
+    as many objectives as before, about the same things and of a kind that shows its verb; limits widen by a share of
+    0.2 at most, in none of several alternatives; directions and the prompt's own numbers stay; nothing that a clause or
+    an objective names goes.
     """
     before, after = (plan if plan.clauses else tied(plan) for plan in (old, new))
-    return [*_gone(before, new), *_unasked(before, after), *_fewer(before, after), *_wider(before, new)]
+    return [
+        *_gone(before, new), *_unasked(before, after), *_fewer(before, after), *_wider(before, new),
+        *_turned(before, new),
+    ]  # fmt: skip
 
 
 def _gone(old: Plan, new: Plan) -> Iterator[str]:
@@ -60,6 +66,9 @@ def _fewer(old: Plan, new: Plan) -> Iterator[str]:
         had, has = (_tied_to(demand, plan) for plan in (old, new))
         if len(has) < len(had):
             yield f"{demand.quoted} has {len(has)} objectives, and had {len(had)}"
+        lost = _about(had) - _about(has)
+        if has and lost:
+            yield f"{demand.quoted} was asked of {', '.join(sorted(lost))}, and is no more"
         shown = SHOWN_BY.get(demand.base)
         if shown and _show(had, shown) and has and not _show(has, shown):
             yield f"{demand.quoted} had an objective that shows it, and what it has now does not"
@@ -71,8 +80,22 @@ def _tied_to(demand: Demand, plan: Plan) -> list[Objective]:
     return [plan.objectives[number] for number in sorted(numbers)]
 
 
+def _about(objectives: list[Objective]) -> set[str]:
+    """The objects that objectives are about."""
+    return {each.object for each in objectives}
+
+
+def _turned(old: Plan, new: Plan) -> Iterator[str]:
+    """Objectives that ask for another direction."""
+    now = {(each.kind, each.object): each.direction for each in new.objectives}
+    for each in old.objectives:
+        direction = now.get((each.kind, each.object), each.direction)
+        if each.direction is not None and direction != each.direction:
+            yield f"{each.object} {each.kind} {direction or 'anywhere'}, where it was {each.direction}"
+
+
 def _show(objectives: list[Objective], shown: frozenset[str]) -> bool:
-    return any(names_of(each) & shown for each in objectives)
+    return any(shows(each, shown) for each in objectives)
 
 
 def _wider(old: Plan, new: Plan) -> Iterator[str]:
@@ -84,7 +107,8 @@ def _wider(old: Plan, new: Plan) -> Iterator[str]:
             continue
         field, has = min(after[key], key=lambda each: each[1])
         if has > had * (1.0 + WIDER) if had > 0.0 else has > had * (1.0 - WIDER) + 1e-12:
-            more = f"{abs(has):g}, where it was {abs(had):g}"
+            more = f"{abs(has):g}" if math.isfinite(has) else "open in an alternative"
+            more += f", where it was {abs(had):g}"
             yield f"{field} of {' '.join(key[:-1])} is {more}; {WIDER:.0%} is the most that a limit may move"
 
 
@@ -95,16 +119,28 @@ def _limits(plan: Plan) -> Limits:
         if objective.formula is not None:
             for key, field, room in _of(objective.formula, False):
                 found.setdefault((*key, field), []).append((field, room))
-        names = (objective.kind, objective.object, objective.ref or "")
-        for field in ("tolerance", "value"):
+        names = sorted(name for name in (objective.object, objective.ref) if name is not None)
+        for field, alike in (("tolerance", "within"), ("value", "least")):  # as a formula calls them
             value = getattr(objective, field)
             if value is not None:
-                found.setdefault((*names, field), []).append((field, value if field == "tolerance" else -value))
+                room = value if field == "tolerance" else -value
+                found.setdefault((objective.kind, *names, alike), []).append((field, room))
     return found
 
 
-def _of(node: Node, denied: bool) -> Iterator[tuple[tuple[str, ...], str, float]]:
+def _either(parts: list[list[_Room]]) -> Iterator[_Room]:
+    """Of alternatives each leaves as much room as the one that leaves most: all, where it says nothing of a thing."""
+    keys = dict.fromkeys((key, field) for part in parts for key, field, _ in part)
+    for key, field in keys:
+        rooms = [[room for k, f, room in part if (k, f) == (key, field)] for part in parts]
+        yield key, field, max(min(each, default=math.inf) for each in rooms)
+
+
+def _of(node: Node, denied: bool) -> Iterator[_Room]:
     op = str(getattr(node, "op", ""))
+    if op == ("and" if denied else "or"):
+        yield from _either([list(_of(part, denied)) for part in node.parts()])
+        return
     if not isinstance(node, Predicate):
         for part in node.parts():
             yield from _of(part, denied ^ (op == "not"))

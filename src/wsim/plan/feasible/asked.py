@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from wsim.plan.schema.formula import Predicate
@@ -23,6 +23,8 @@ class Said:
         fields: Of the predicate; of a kind `object` and `ref`.
         denied: It stands under a `not`.
         throughout: It is to hold all the time, from the start on.
+        whole: And to the end.
+        optional: It is one of several alternatives.
     """
 
     where: str
@@ -30,6 +32,8 @@ class Said:
     fields: dict[str, Any]
     denied: bool = False
     throughout: bool = False
+    whole: bool = False
+    optional: bool = False
 
     @property
     def object(self) -> str | None:
@@ -55,25 +59,30 @@ def said(plan: Plan) -> list[Said]:
             found.append(_kind(where, objective))
         else:
             alone = objective.formula if isinstance(objective.formula, Predicate) else None
-            found += list(_of(objective.formula, where, False, alone is not None and alone.alone == "always"))
+            always = alone is not None and alone.alone == "always"
+            found += list(_of(objective.formula, Said(f"{where}.formula", "", {}, False, always, always)))
     return found
 
 
 def _kind(where: str, objective: Objective) -> Said:
     fields = {"object": objective.object, "ref": objective.ref}
-    return Said(where, objective.kind, fields, throughout=objective.kind in THROUGHOUT)
+    throughout = objective.kind in THROUGHOUT
+    return Said(where, objective.kind, fields, throughout=throughout, whole=throughout)
 
 
-def _of(node: Node, where: str, denied: bool, throughout: bool) -> Iterator[Said]:
+def _of(node: Node, under: Said) -> Iterator[Said]:
+    """The predicates of a formula, each with what the operators above it say of when."""
     op = str(getattr(node, "op", ""))
     if isinstance(node, Predicate):
         fields = {name: getattr(node, name) for name in type(node).model_fields if name != "op"}
-        yield Said(f"{where}.formula", op, fields, denied, throughout)
+        yield replace(under, name=op, fields=fields)
         return
-    if op in ("or", "then", "until", "eventually", "finally", "mean"):
-        throughout = False  # it need not hold at the start, or not at all
+    if op in ("or", "then", "until", "eventually", "finally", "mean"):  # it need not hold at the start, or not at all
+        under = replace(under, throughout=False, whole=False, optional=under.optional or op == "or")
     if op == "always":
         window = getattr(node, "window", None)
-        throughout = window is None or window[0] == 0.0
+        under = replace(under, throughout=window is None or window[0] == 0.0, whole=window is None)
+    if op == "not":
+        under = replace(under, denied=not under.denied)
     for part in node.parts():
-        yield from _of(part, where, denied ^ (op == "not"), throughout)
+        yield from _of(part, under)

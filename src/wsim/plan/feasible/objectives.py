@@ -87,14 +87,16 @@ def _contradictions(asked: Sequence[Said]) -> Iterator[str]:
 
 def _against(one: Said, other: Said) -> str:
     for first, second in ((one, other), (other, one)):
-        if first.denied or second.denied:
+        if first.denied or second.denied or first.optional or second.optional:
             continue
-        if first.name == "topples" and second.name == "upright" and second.throughout:
+        if first.name == "topples" and second.name == "upright" and second.whole:
             within = second.fields.get("within")
             if within is None or within < _TIPPED:
                 return f"{one.object} cannot topple and stay upright"
         same = _others(first) & _others(second)
         for these, those in _EXCLUDE:
+            if second.name == "never_touches" and not second.whole:
+                continue
             if first.name in these and second.name in those and same:
                 return f"{one.object} cannot do both, {first.name} and {second.name}, with {min(same)}"
     return ""

@@ -29,7 +29,7 @@ class Clause(Sparse):
         unchecked: Why nothing shows that they came true; given in place of `by`.
     """
 
-    words: Text
+    words: Annotated[Text, Field(min_length=1)]
     by: list[Index | Thing] | None = Field(None, max_length=1000)
     unchecked: Text | None = None
 
