@@ -157,3 +157,20 @@ def test_a_loop_has_no_efforts_on_the_joint_that_closes_it(tmp_path):
     scene.schedule(
         "turn", next(f"pin_{k}" for k in range(4) if not closing[0].endswith(str(k))), "effort", times=[0], values=[1]
     )
+
+
+def test_a_joint_that_may_let_go_has_no_effort_and_tells_no_event(tmp_path):
+    """It is a constraint, and none of the trees' coordinates: said when the stage is checked, whatever comes first."""
+    scene = Scene()
+    scene.box("bar", size=(0.6, 0.1, 0.1), position=(0.3, 0.0, 1.0), mass=1.0)
+    scene.box("block", size=(0.2,) * 3, position=(3.0, 0.0, 0.1), mass=1.0)
+    scene.joint_revolute("pin", None, "bar", anchor=(0.0, 0.0, 1.0), axis="Y")
+    scene.schedule("pull", "pin", "effort", times=[0.0], values=[1.0])
+    scene.schedule("push", "block", "force", times=[0.0], values=[(1, 0, 0)], after=Event(joint="pin", above=45.0))
+    assert check_stage(scene.save(tmp_path / "held.usda"), []) == []
+    scene.schedule("let_go", "pin", "release", times=[0.5])
+    problems = "\n".join(check_stage(scene.save(tmp_path / "loose.usda"), []))
+    assert "it may break or let go, and has no effort: schedule a force or a torque of its body" in problems
+    assert (
+        "/World/pin> closes a loop, or may break or let go, and where it is is not told; let the event be" in problems
+    )

@@ -47,7 +47,9 @@ def _joint_lacks(joint: Usd.Prim, quantity: str) -> str | None:
     if not any(joint.IsA(kind) for kind in (UsdPhysics.RevoluteJoint, UsdPhysics.PrismaticJoint)):
         return f"a joint of its kind has no {quantity}; a hinge or a slider has"
     if UsdPhysics.Joint(joint).GetExcludeFromArticulationAttr().Get():
-        return f"it closes a loop, or may break, and has no {quantity}: schedule another joint of the loop"
+        if may_break(UsdPhysics.Joint(joint)):
+            return f"it may break or let go, and has no {quantity}: schedule a force or a torque of its body"
+        return f"it closes a loop, and has no {quantity}: schedule another joint of the loop"
     drive = UsdPhysics.DriveAPI.Get(joint, "angular" if joint.IsA(UsdPhysics.RevoluteJoint) else "linear")
     if quantity == "effort":
         return None
@@ -127,6 +129,11 @@ def _of_event(prim: Usd.Prim, before: list[Usd.Prim]) -> Iterator[str]:
         yield "eventAxis: it must be X, Y or Z"
     elif kind == "joint" and not any(ends[0].IsA(k) for k in (UsdPhysics.RevoluteJoint, UsdPhysics.PrismaticJoint)):
         yield f"eventOf: <{ends[0].GetPath()}> is no hinge and no slider"
+    elif kind == "joint" and UsdPhysics.Joint(ends[0]).GetExcludeFromArticulationAttr().Get():
+        yield (
+            f"eventOf: <{ends[0].GetPath()}> closes a loop, or may break or let go, and where it is is not told; let "
+            "the event be of its body: body, axis, and above or below"
+        )
     elif kind in ("start", "end") and ends[0] not in before:
         yield f"eventOf: <{ends[0].GetPath()}> is no schedule that stands before this one"
     if not 0.0 <= _get(prim, "eventDelay", 0.0) <= MAX_DURATION:
