@@ -105,9 +105,9 @@ def test_kernels_see_make_and_set_what_numpy_does(own: Path, device: str, told: 
         targets, efforts = kept.numpy().copy(), RANDOM.normal(size=ledger.dofs).astype(np.float32)
         for policy in (host, kernels):
             kept.assign(targets)
-            ledger._last.assign(efforts)
+            ledger.last.assign(efforts)
             policy(0.02 * turn, simulation)
-            found.append((kept.numpy().copy(), ledger._last.numpy().copy()))
+            found.append((kept.numpy().copy(), ledger.last.numpy().copy()))
         np.testing.assert_allclose(kernels.seen.numpy(), host.seen, rtol=CLOSE, atol=CLOSE)
         np.testing.assert_allclose(kernels.made.numpy(), host.made, rtol=CLOSE, atol=CLOSE)
         np.testing.assert_allclose(found[1][0], found[0][0], rtol=CLOSE, atol=CLOSE)
