@@ -223,3 +223,19 @@ def test_what_lies_still_in_the_picture_is_not_lost_for_what_moves(tmp_path):
     way = np.subtract((0.0, 1.2, 0.05), camera.eye)
     assert way @ ahead > 0.0
     assert abs(way @ right) < math.tan(math.radians(camera.fov / 2)) * (way @ ahead)
+
+
+def test_a_world_in_which_nothing_can_move_is_framed_on_what_stands(tmp_path):
+    scene = a_world(0.2)
+    scene.box("pane", size=(0.1, 2.0, 2.0), position=(3.0, 0.0, 1.0), static=True)
+    a_camera(scene, eye=(0.0, -6.0, 2.0), target=(0.0, -9.0, 1.0))
+    world, motion = recorded(scene, tmp_path)
+    (camera,) = Framing(world, motion).cameras()
+    assert math.dist(camera.target, (3.0, 0.0, 1.0)) < 1.0
+
+
+def test_a_world_of_ground_alone_keeps_its_camera(tmp_path):
+    scene = a_world(0.2)
+    a_camera(scene)
+    world, motion = recorded(scene, tmp_path)
+    assert Framing(world, motion).cameras() == world.cameras

@@ -72,7 +72,7 @@ class Subject:
 
 
 def subjects(world: World, motion: Motion, named: Sequence[str] = ()) -> list[Subject]:
-    """What is to be seen, the main ones first: what is named, else what moves, else what could; never the ground.
+    """What is to be seen, the main ones first: what is named, what moves, what could, or what stands; never the ground.
 
     What those are tied to is as one of them.
 
@@ -91,8 +91,8 @@ def subjects(world: World, motion: Motion, named: Sequence[str] = ()) -> list[Su
     ]
     able = [*bodies, *fluids]
     movers = [each for each in able if each.moves]
-    main = [each for each in able if each.prim in asked] or movers or able
     standing = _statics(world, len(motion.time))
+    main = [each for each in able if each.prim in asked] or movers or able or standing
     tied = _tied(world, {each.prim for each in main})
     main += [each for each in (*able, *standing) if each.prim in tied]
     mains = {each.prim for each in main}
