@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.judge.theory import G, RADIUS, ask, ball, ground, record, times
+from tests.judge.theory import RADIUS, G, ask, ball, ground, record, times
 from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.checks.energy import CheckEnergy
 from wsim.judge.evidence.evidence import Evidence

@@ -160,7 +160,7 @@ def test_what_is_fixed_together_weighs_as_one():
      (False, 12.0, True), (False, 8.0, False), (False, 16.0, False)],
 )  # fmt: skip
 def test_what_hangs_on_it_may_weigh_on_it_and_its_own_doors_do(apart, load, holds):
-    """A box of 8 kg with a door of 4 kg on a hinge: a body of its own, which may stand elsewhere, or one of its parts."""
+    """A box of 8 kg with a door of 4 kg on a hinge: a body of its own, that may stand elsewhere, or a part of it."""
     stand, door = ("box", "door") if apart else ("box/stand", "box/door")
     bodies = [solid(stand, shape("box", 0.2, 0.2, HEIGHT), 8.0), solid(door, shape("box", 0.2, 0.2, HEIGHT), 4.0)]
     table = still("table", shape("box", 1.0, 1.0, 0.5, position=(0.0, 0.0, 0.25)))

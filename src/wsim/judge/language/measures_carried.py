@@ -102,7 +102,7 @@ def _off(signals: Signals, name: str, ref: str) -> tuple[Floats, Support]:
 @measures(WeighsOn)
 def _weighs_on(asked: WeighsOn, signals: Signals) -> list[Measure]:
     prim, other = signals.prim(asked.object), signals.prim(asked.ref)
-    # What is one is carried as one; what hangs on it by a hinge or a rope may weigh on it, too, or be carried elsewhere.
+    # What is one is carried as one; what hangs on it by a hinge or a rope may weigh on it or elsewhere.
     weight, most = (_weight(signals, prims) for prims in (signals.together(asked.object), signals.tied(asked.object)))
     force = borne(signals, asked.object, asked.ref)
     fluid = next((each for each in signals.world.fluids if each.container == other), None)

@@ -191,7 +191,7 @@ class Signals:
         return np.asarray(ours[two] * theirs[one] - ours[one] * theirs[two])
 
     def together(self, name: str) -> set[str]:
-        """The prims of an object, of all its bodies where it is made of several, and of what fixed joints hold to it."""
+        """The prims of an object, of all its bodies if it is made of several, and of what fixed joints hold to it."""
         if not self.moves(name):
             return {self.prim(name)}
         bodies = self.world.bodies
