@@ -202,9 +202,9 @@ class Signals:
     def tied(self, name: str) -> set[str]:
         """The same, and what joints and cords of any kind tie to it, one after another: it may hang on it."""
         found, world = self.together(name), self.world
-        ends = [{joint.parent, joint.child} for joint in world.joints]
-        ends += [{guide.body for guide in cord.path} for cord in world.cords]
-        while more := {prim for pair in ends if found & pair for prim in pair & self._rows.keys()} - found:
+        ends = [{joint.parent or "", joint.child} for joint in world.joints]
+        ends += [{guide.body or "" for guide in cord.path} for cord in world.cords]
+        while more := {prim for pair in ends if found & pair for prim in pair if prim in self._rows} - found:
             found |= more
         return found
 
