@@ -57,6 +57,7 @@ def plan(prompt: str) -> Plan:
     cast = understand(parse(prompt))
     scene = _scene(cast)
     scene.duration = max([scene.duration, *(hung.duration for hung in scene.hung)])
+    scene.frame_rate = max([scene.frame_rate, *(hung.frame_rate for hung in scene.hung)])
     duration = _duration(cast, scene)
     _note_what_is_common(cast, prompt, duration, scene)
     common = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 from wsim.assets import get
 from wsim.errors import UserError
 from wsim.plan.schema import External, Material, PlanObject, Proxy, Registration, Relation
-from wsim.rules.cast import Cast, Thing
+from wsim.rules.cast import ROUND, Cast, Thing
 from wsim.rules.lexicon import Noun, lexicon
 from wsim.rules.materials import material_named
 
@@ -61,6 +61,8 @@ def _weighty(thing: Thing, material: Material, cast: Cast) -> float | None:
 def _default_material(thing: Thing) -> str:
     if "float" in thing.does or thing.noun.primitive == "box" or thing.noun.lies:
         return "steel" if "sink" in thing.does or "submerge" in thing.does else "wood"
+    if thing.path is not None and thing.target is not None and thing.target.arrangement == "row":
+        return "wood"  # what is heavy against a row, and comes fast, pushes it together rather than over
     return "steel" if ("roll" in thing.does and "bounce" not in thing.does) or thing.place == "water" else "rubber"
 
 
@@ -113,12 +115,15 @@ def _mouth(noun: Noun) -> tuple[float, ...]:
 
 
 def _for_ball(thing: Thing, size: tuple[float, ...], cast: Cast, why: str) -> tuple[tuple[float, ...], str]:
-    """Dominoes as large against the ball that knocks them over as the usual ones are against the usual ball [m]."""
+    """Dominoes as large against what rolls into them as the usual ones are against the usual ball [m].
+
+    So its middle is above theirs, and the blow turns them away from it.
+    """
     usual = lexicon().nouns["ball"].size[0]
     radii = [
         one.phrase.measures.get("radius", (one.phrase.length or 2 * one.noun.size[0]) / 2) * (one.phrase.scale or 1.0)
         for one in cast.things
-        if one.target is thing and one.round
+        if one.target is thing and one.noun.primitive in ROUND
     ]
     share = min(2.0, radii[0] / usual) if radii else 1.0
     if thing.support is not None and thing.support.noun.family == "furniture":  # a row has to go on it
@@ -126,7 +131,7 @@ def _for_ball(thing: Thing, size: tuple[float, ...], cast: Cast, why: str) -> tu
         share = min(share, ROW_ROOM * thing.support.noun.size[0] / (pitch * thing.count))
     if 0.7 <= share <= 1.5:
         return size, why
-    return tuple(round(share * edge, 4) for edge in size), "as large against the ball that hits them as usual"
+    return tuple(round(share * edge, 4) for edge in size), "as large against what rolls into them as usual"
 
 
 def _roomy(thing: Thing, size: tuple[float, ...], cast: Cast, why: str) -> tuple[tuple[float, ...], str]:

@@ -154,6 +154,26 @@ def test_what_is_fixed_together_weighs_as_one():
         assert found("weighs_on(box, table)", signals).satisfied[0] == holds
 
 
+@pytest.mark.parametrize(
+    ("apart", "load", "holds"),
+    [(True, 12.0, True), (True, 8.0, True), (True, 15.0, False), (True, 5.0, False),
+     (False, 12.0, True), (False, 8.0, False), (False, 16.0, False)],
+)  # fmt: skip
+def test_what_hangs_on_it_may_weigh_on_it_and_its_own_doors_do(apart, load, holds):
+    """A box of 8 kg with a door of 4 kg on a hinge: a body of its own, that may stand elsewhere, or a part of it."""
+    stand, door = ("box", "door") if apart else ("box/stand", "box/door")
+    bodies = [solid(stand, shape("box", 0.2, 0.2, HEIGHT), 8.0), solid(door, shape("box", 0.2, 0.2, HEIGHT), 4.0)]
+    table = still("table", shape("box", 1.0, 1.0, 0.5, position=(0.0, 0.0, 0.25)))
+    hinge = Joint(prim="/World/hinge", kind="revolute", parent=f"/World/{stand}", child=f"/World/{door}")
+    places = [np.broadcast_to([x, 0.0, 0.7], (len(TIME), 3)) for x in (0.0, 0.2)]
+    force = np.zeros((2, 3))
+    force[0, 2] = load * G
+    world = World(bodies=bodies, statics=[table], joints=[hinge])
+    outcome = found("weighs_on(box, table)", moving(world, TIME, *places, force=force))
+    assert outcome.satisfied[0] == holds
+    assert outcome.measures[0].expected == pytest.approx((8.0 if apart else 12.0) * G)
+
+
 def test_the_fluid_carries_its_part(pool):
     case = pool()
     signals = Signals.of_recording(case.recording)

@@ -249,7 +249,8 @@ class RecordedContacts:
     def speed(self, side: int) -> Floats:
         """Velocity of the bodies of one side at the place of each row, at both ends, (n, 2, 3) [m/s].
 
-        The place is that of the middle of the interval, relative to where the bodies are halfway.
+        The place is that of the middle of the interval, relative to where the bodies are halfway; of a ball it is
+        below its centre along the push, wherever in the interval it was hit: what spins may go several radii in one.
         """
         motion, point, frame = self._evidence.motion, self.track.point.astype(np.float64), self.track.frame
         found, rows = np.zeros((len(frame), 2, 3)), np.maximum(self.body[:, side], 0)
@@ -257,10 +258,23 @@ class RecordedContacts:
             return found
         moves, before = (self.body[:, side] >= 0)[:, None], np.maximum(frame - 1, 0)
         arm = point - 0.5 * (motion.com[before, rows] + motion.com[frame, rows])
+        balls = np.array([self._ball_radius(k) for k in range(len(self.shapes))])[self.track.pair[:, side]]
+        pressed = np.linalg.norm(self.track.along.astype(np.float64), axis=1)
+        hit = (balls > 0.0) & (pressed > 0.0)
+        normal = self.track.along[hit] / pressed[hit, None]
+        arm[hit] = (1.0 - 2.0 * side) * balls[hit, None] * normal
         for end in (0, 1):
             at = np.maximum(frame - 1 + end, 0)
             found[:, end] = np.where(moves, motion.v[at, rows] + np.cross(motion.w[at, rows], arm), 0.0)
         return found
+
+    def _ball_radius(self, k: int) -> float:
+        """Of a shape that is a sphere about its body's centre of mass [m]; 0 of others."""
+        shape, owner = self.shapes[k], int(self._owner[k])
+        if shape.kind != "sphere" or owner < 0:
+            return 0.0
+        off = np.linalg.norm(np.array(shape.position) - np.array(self.world.bodies[owner].com))
+        return float(shape.size[0]) if off <= FLOAT32 * shape.size[0] else 0.0
 
     def swing(self, normal: Floats, speed: Floats) -> Floats:
         """How far the slips of a pair's points may turn from their mean's way, (n,) [rad].

@@ -102,22 +102,29 @@ def _off(signals: Signals, name: str, ref: str) -> tuple[Floats, Support]:
 @measures(WeighsOn)
 def _weighs_on(asked: WeighsOn, signals: Signals) -> list[Measure]:
     prim, other = signals.prim(asked.object), signals.prim(asked.ref)
-    parts = sorted(signals.row(each) for each in signals.together(asked.object))  # what is one is carried as one
+    # What is one is carried as one; what hangs on it by a hinge or a rope may weigh on it or elsewhere.
+    weight, most = (_weight(signals, prims) for prims in (signals.together(asked.object), signals.tied(asked.object)))
     force = borne(signals, asked.object, asked.ref)
-    assert signals.mass is not None
-    weight = signals.mass[:, parts].sum(axis=1, keepdims=True) * signals.gravity
     fluid = next((each for each in signals.world.fluids if each.container == other), None)
     lift, film = _by_fluid(signals, asked.object, fluid) if fluid is not None else (0.0, 0.0)
     expected, room = weight - lift, asked.share * weight
     source = f"{asked.share:g} of its weight about its weight" + (" less buoyancy" if lift else "")
+    source += ", and that of what is tied to it" if np.any(most > weight) else ""
     if film > 0.0:
         source += f", and upwards {film:.3g} N for the fluid that particles cannot bring under it"
-    band = (expected - room, expected + room + film)
+    band = (expected - room, expected + (most - weight) + room + film)
     return [
         Measure.between(
             force, band, expected, what="force of contacts upwards", prim=prim, unit="N", scale=room, limit_from=source
         )
     ]
+
+
+def _weight(signals: Signals, prims: set[str]) -> Floats:
+    """Of some bodies together in each world, (W, 1) [N]."""
+    assert signals.mass is not None
+    rows = sorted(signals.row(prim) for prim in prims)
+    return signals.mass[:, rows].sum(axis=1, keepdims=True) * signals.gravity
 
 
 def borne(signals: Signals, name: str, ref: str) -> Floats:
@@ -131,8 +138,7 @@ def borne(signals: Signals, name: str, ref: str) -> Floats:
     net = signals.contact_force[:, :, rows].astype(np.float64).sum(axis=2) @ signals.up
     given = signals.given(ours, theirs)
     if given is not None:
-        assert signals.mass is not None
-        least = LITTLE * signals.mass[:, rows].sum(axis=1, keepdims=True) * signals.gravity
+        least = LITTLE * _weight(signals, ours)
         by_it = given @ signals.up
         return np.where(by_it >= least, net, np.minimum(net, by_it))
     lies = np.zeros(net.shape, dtype=bool)

@@ -191,12 +191,22 @@ class Signals:
         return np.asarray(ours[two] * theirs[one] - ours[one] * theirs[two])
 
     def together(self, name: str) -> set[str]:
-        """The prims of an object and of what fixed joints hold to it."""
+        """The prims of an object, of all its bodies if it is made of several, and of what fixed joints hold to it."""
         if not self.moves(name):
             return {self.prim(name)}
         bodies = self.world.bodies
         everything = self.frames(*(body.prim for body in bodies))
-        return {bodies[k].prim for k in welded(everything, self.row(name))}
+        own = [self._rows[prim] for prim in self.parts(name) if prim in self._rows]
+        return {bodies[k].prim for row in own for k in welded(everything, row)}
+
+    def tied(self, name: str) -> set[str]:
+        """The same, and what joints and cords of any kind tie to it, one after another: it may hang on it."""
+        found, world = self.together(name), self.world
+        ends = [{joint.parent or "", joint.child} for joint in world.joints]
+        ends += [{guide.body or "" for guide in cord.path} for cord in world.cords]
+        while more := {prim for pair in ends if found & pair for prim in pair if prim in self._rows} - found:
+            found |= more
+        return found
 
     # ---- who is who
     def parts(self, name: str) -> set[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.layout.bodies import around
-from wsim.plan.schema import Objective, PlanObject, Relation
+from wsim.plan.schema import Objective, PlanObject, Registration, Relation
 from wsim.plan.schema.formula_contact import CollidesWith
 from wsim.plan.schema.predicates import OVERLAP
 from wsim.rules.cast import Beside, Cast, Thing
@@ -157,6 +157,10 @@ def _place(thing: Thing, cast: Cast, taken: set[str], part: Part, ends: _Ends) -
     height = _drop_height(thing, cast, part)
     made = bodies(thing, cast, taken)
     part.names[id(thing)] = [item.name for item in made]
+    if not thing.does and thing.support is None and any(one.support is thing and bounces(one) for one in cast.things):
+        # A loose one would go down into the ground and take the blow's energy along.
+        made = [item.model_copy(update={"state": "static", "registration": Registration()}) for item in made]
+        cast.assume(thing.words, "fixed to the ground", "so that what falls on it bounces off it alone")
     if "upright" in thing.manners:
         made = [upended(item) for item in made]
     if "on_side" in thing.manners:

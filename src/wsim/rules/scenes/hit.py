@@ -9,8 +9,18 @@ from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Relation
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.scenes.bounce import restitution, returned
+from wsim.rules.scenes.knock import HIGH, deep, enough, shoving_speed, tipping_speed
 from wsim.rules.scenes.lasting import stops
-from wsim.rules.scenes.motion import SLIDE_SPEED, aimed_at, check_round, falls_off, ground_object, item_of, started
+from wsim.rules.scenes.motion import (
+    SLIDE_SPEED,
+    THROW_SPEED,
+    aimed_at,
+    check_round,
+    falls_off,
+    ground_object,
+    item_of,
+    started,
+)
 from wsim.rules.scenes.part import Part, pair_friction, stopping_distance, tall
 from wsim.rules.sizes import bodies
 
@@ -22,6 +32,7 @@ APPROACH = 0.6  # that it takes what rolls to get there [s]
 STOP_ROOM = 1.3  # times the way that theory gives it to its stop, from what slides to what it stops before
 SLIDE_SHARE = 0.6  # of the way to its stop, after which what slides hits
 MEET_SPEED, MEET_DISTANCE = 1.0, 0.8  # of two that come at each other [m/s], [m]
+ROW_PACE = 0.5  # of sqrt(g h): what rolls into a row is slower than that falls, or it pushes them into one another
 AIM_DISTANCE = 1.5  # from what is thrown to what it is thrown at [m]
 GOES_ON = 0.5  # that what is hit goes on with what hit it, which the cameras show [m]
 FOOT_DISTANCE = 0.3  # from a ramp's foot to what is hit there [m]
@@ -52,9 +63,11 @@ def hit(thing: Thing, cast: Cast, taken: set[str], part: Part) -> None:
 
 
 def _fly(thing: Thing, target: Thing, item: PlanObject, cast: Cast, part: Part) -> None:
-    first, *rest = part.names[id(target)]
-    name = [first, *rest][-1] if target.arrangement == "stack" else first
-    item, base = aimed_at(thing, item, name, cast, part)
+    names = part.names[id(target)]
+    name = names[-1] if target.arrangement == "stack" else names[0]
+    share = HIGH if "topple" in target.does and target.arrangement != "stack" else 0.5
+    speed = enough(thing, THROW_SPEED, _to_fall(target, item, name, share, part), cast)
+    item, base = aimed_at(thing, item, name, speed, share, cast, part)
     _add(thing, target, item, [base], AIM_DISTANCE, cast, part)
     _ask(thing, target, item, name, cast, part)
 
@@ -62,7 +75,11 @@ def _fly(thing: Thing, target: Thing, item: PlanObject, cast: Cast, part: Part) 
 def _on_ground(thing: Thing, target: Thing, item: PlanObject, cast: Cast, part: Part) -> None:
     first = part.names[id(target)][0]
     slides = _slides(thing)
-    speed = thing.speed or HIT_SPEED
+    met = _met(item, part.names[id(target)], target, part)
+    usual = HIT_SPEED
+    if "topple" in target.does and target.arrangement == "row":
+        usual = round(ROW_PACE * math.sqrt(GRAVITY * tall(item_of(first, part))), 1)
+    speed = enough(thing, usual, _to_fall(target, item, met, _half_height(item) / tall(item_of(met, part)), part), cast)
     if thing.speed is None:
         cast.assume(thing.words, f"starts at {speed:g} m/s along +X", "the prompt gives no speed")
     friction = pair_friction(item, ground_object(cast.ground), thing.said("friction", None))
@@ -79,7 +96,30 @@ def _on_ground(thing: Thing, target: Thing, item: PlanObject, cast: Cast, part: 
         part.objectives.append(stops(item.name, first))
         return
     _go_on(thing, target, item, friction, distance, cast, part)
-    _ask(thing, target, item, _met(item, part.names[id(target)], target, part), cast, part)
+    _ask(thing, target, item, met, cast, part)
+
+
+def _to_fall(target: Thing, item: PlanObject, name: str, share: float, part: Part) -> float:
+    """The speed that something needs to knock its target over [m/s]; 0 where that is not asked.
+
+    Args:
+        target: What it hits.
+        item: What hits.
+        name: The one of the target's objects that it meets.
+        share: Of that one's height, at which it does.
+        part: The scene.
+    """
+    met, names = item_of(name, part), part.names[id(target)]
+    if "topple" not in target.does or met.primitive not in ("box", "cylinder"):
+        return 0.0
+    if target.arrangement == "stack":
+        return shoving_speed(item, met, len(names) - 1 - names.index(name), restitution(item, met))
+    return tipping_speed(item, met, min(share, 1.0) * tall(met), restitution(item, met))
+
+
+def _half_height(item: PlanObject) -> float:
+    """Of what rolls or slides, from the ground to its middle [m]."""
+    return item.size[2] / 2 if item.primitive == "box" else item.size[0]
 
 
 def _on_table(thing: Thing, target: Thing, item: PlanObject, cast: Cast, part: Part) -> None:
@@ -87,11 +127,11 @@ def _on_table(thing: Thing, target: Thing, item: PlanObject, cast: Cast, part: P
     assert thing.support is not None
     carrier = item_of(part.names[id(thing.support)][-1], part)
     met = item_of(part.names[id(target)][0], part)
-    distance = round(min(SLIDE_DISTANCE, carrier.size[0] - _deep(item) - _deep(met) - TABLE_DISTANCE), 3)
+    distance = round(min(SLIDE_DISTANCE, carrier.size[0] - deep(item) - deep(met) - TABLE_DISTANCE), 3)
     if distance < TABLE_DISTANCE / 2:
         raise UserError(f"{carrier.name} is {carrier.size[0]:g} m deep, too small for {thing.words!r} to go along it")
     friction = pair_friction(met, carrier)
-    needed = SPARE * math.sqrt(2 * friction * GRAVITY * _deep(met) / 2) if target.off else 0.0
+    needed = SPARE * math.sqrt(2 * friction * GRAVITY * deep(met) / 2) if target.off else 0.0
     masses = item.mass or 1.0, met.mass or 1.0
     speed = thing.speed or max(TABLE_SPEED, math.ceil(10 * needed * sum(masses) / masses[0]) / 10)
     if _slides(thing) and thing.speed is None:
@@ -112,10 +152,6 @@ def _on_table(thing: Thing, target: Thing, item: PlanObject, cast: Cast, part: P
 
 def _slides(thing: Thing) -> bool:
     return "slide" in thing.does or "push" in thing.does
-
-
-def _deep(item: PlanObject) -> float:
-    return item.size[0] if item.primitive == "box" else 2 * item.size[0]
 
 
 def _add(
@@ -207,8 +243,7 @@ def _met(item: PlanObject, names: list[str], target: Thing, part: Part) -> str:
     """Which of a target's objects something on the ground meets: the first of a row, of a stack that at its middle."""
     if target.arrangement != "stack":
         return names[0]
-    middle = item.size[0] if item.primitive == "sphere" else tall(item) / 2
-    return names[min(int(middle / tall(item_of(names[0], part))), len(names) - 1)]
+    return names[min(int(_half_height(item) / tall(item_of(names[0], part))), len(names) - 1)]
 
 
 def _collision(name: str, ref: str, part: Part) -> None:

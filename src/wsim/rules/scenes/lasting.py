@@ -7,10 +7,11 @@ from wsim.plan.schema import Objective
 from wsim.plan.schema.formula import Eventually, Formula
 from wsim.plan.schema.formula_contact import StopsBefore
 from wsim.plan.schema.formula_motion import ClimbsTo, DiesDown
-from wsim.plan.schema.formula_place import OwnSpinBetween, TiltBetween
+from wsim.plan.schema.formula_place import OwnSpinBetween, TiltBetween, TurnedBetween
 from wsim.rules.cast import Cast, Thing
 
 RATE = 0.05  # of a rate of turning, that it may be off by
+DOWN = 0.9  # of the angle to its lowest point, that what swings into something turns by at least
 
 
 def asked(name: str, sentence: str, formula: Formula) -> Objective:
@@ -49,6 +50,12 @@ def turns(name: str, rate: float) -> Objective:
     low, high = sorted((rate * (1.0 - RATE), rate * (1.0 + RATE)))
     formula = OwnSpinBetween(object=name, axis="z", low=low, high=high)
     return asked(name, f"{name} turns at {rate:g} degrees a second.", formula)
+
+
+def swings_down(name: str, angle: float) -> Objective:
+    """What is let go at a positive angle about Y [deg] comes down from there, all but a tenth of the way or farther."""
+    formula = Eventually(of=TurnedBetween(object=name, axis="y", low=-180.0, high=-DOWN * angle))
+    return asked(name, f"{name} swings down by {DOWN * angle:.3g} degrees or more.", formula)
 
 
 def leans(name: str, angle: float, most: float, words: str, sign: float = 1.0) -> Objective:

@@ -271,20 +271,25 @@ def throw_height(thing: Thing, cast: Cast) -> float:
     return thing.drop_height
 
 
-def aimed_at(thing: Thing, item: PlanObject, aimed: str, cast: Cast, part: Part) -> tuple[PlanObject, Relation]:
-    """A throw that hits the middle of an object: the level way gives the time, and that the upward speed."""
+def aimed_at(
+    thing: Thing, item: PlanObject, aimed: str, speed: float, share: float, cast: Cast, part: Part
+) -> tuple[PlanObject, Relation]:
+    """A throw that hits an object at a share of its height: the level way gives the time, and that the upward speed."""
     if thing.angle is not None:
         raise UserError(f"{thing.words!r}: thrown at something, it takes the angle that hits; leave the angle out")
-    speed = THROW_SPEED if thing.speed is None else thing.speed
     height = 0.5 if thing.drop_height is None else thing.drop_height
     if thing.drop_height is None:
         cast.assume_height(thing.words, "thrown from {} up", height)
-    centre = middle(aimed, part)
+    centre = middle(aimed, part) + (share - 0.5) * tall(item_of(aimed, part))
     radius = item.size[0] if item.primitive != "box" else item.size[2] / 2
     time = AIM_DISTANCE / speed
     up = (centre - height - radius) / time + GRAVITY * time / 2
     velocity: Vec3 = (speed, 0.0, tidy(up))
-    cast.assume(thing.words, f"at {speed:g} m/s level and {up:.2f} m/s up", "so that it hits the middle of its target")
+    cast.assume(
+        thing.words,
+        f"at {speed:g} m/s level and {up:.2f} m/s up",
+        f"so that it hits its target at {share:.0%} of its height",
+    )
     moving = item.model_copy(update={"velocity": velocity})
     part.goes[item.name] = _arc((1.0, 0.0, 0.0), speed, up, time)
     return moving, Relation(predicate="SPAWNED-ABOVE", value=height)

@@ -10,7 +10,7 @@ from wsim.errors import UserError
 from wsim.plan.schema import Joint, JointDrive, Objective, PlanObject, Pose
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.materials import material_named
-from wsim.rules.scenes.lasting import to_and_fro
+from wsim.rules.scenes.lasting import swings_down, to_and_fro
 from wsim.rules.scenes.part import Part, tall, tidy
 from wsim.rules.scenes.struck import Struck, stand_before
 from wsim.rules.sizes import LARGEST, SMALLEST, bodies, material_of, names, size_of
@@ -22,6 +22,7 @@ APART = 0.3  # between several side by side [m]
 LESS = 0.9  # that each half swing goes as far as the one before, of what dies down
 PERIODS = 3.0  # that a pendulum is watched for
 AFTER = 2.0  # and what it has hit [s]
+QUICK = 60.0  # pictures a second of a blow: what rubs on the ground meanwhile is told from it [1/s]
 
 
 @dataclass
@@ -124,7 +125,8 @@ def _ask(hanging: Hanging, body: PlanObject, angle: float, struck: Struck | None
     if struck is not None:
         speed = math.sqrt(2 * GRAVITY * length * (1 - math.cos(math.radians(angle))))
         struck.ask(thing, body, speed, part, cast)
-        part.duration = round(period / 3 + AFTER, 1)
+        part.objectives.append(swings_down(name, angle))
+        part.duration, part.frame_rate = round(period / 3 + AFTER, 1), QUICK
         x, drop = tidy(length * math.sin(math.radians(angle))), tidy(length * (1.0 - math.cos(math.radians(angle))))
         part.goes[name] = [(x, 0.0, -drop), (2 * x, 0.0, 0.0)]
         return

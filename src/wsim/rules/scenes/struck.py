@@ -8,6 +8,7 @@ from wsim.defaults import GRAVITY
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Pose
 from wsim.rules.cast import Cast, Thing
+from wsim.rules.scenes.knock import deep
 from wsim.rules.scenes.motion import falls_off
 from wsim.rules.scenes.part import Part, pair_friction, tall, tidy
 from wsim.rules.scenes.tip import slender, upended
@@ -99,7 +100,7 @@ def stand_before(thing: Thing, item: PlanObject, part: Part, cast: Cast, taken: 
     part.names[id(target)] = [each.name for each in posed]
     if carrier is not None:
         carrier = carrier.model_copy(
-            update={"pose": Pose(position=(tidy(reach + GAP + _deep(items[0]) / 2), 0.0, tidy(base / 2)))}
+            update={"pose": Pose(position=(tidy(reach + GAP + deep(items[0]) / 2), 0.0, tidy(base / 2)))}
         )
         part.objects.append(carrier)
         part.names[id(target.support)] = [carrier.name]
@@ -115,12 +116,12 @@ def _posed(items: list[PlanObject], heights: list[float], target: Thing, x: floa
     for each, height in zip(items, heights, strict=True):
         lying = each.relation("LIES-ALONG-Y") is not None
         turned = (90.0, 0.0, 0.0) if lying else (0.0, 0.0, 0.0)
-        pose = Pose(position=(tidy(at + _deep(each) / 2), 0.0, tidy(z + height / 2)), rotation_deg=turned)
+        pose = Pose(position=(tidy(at + deep(each) / 2), 0.0, tidy(z + height / 2)), rotation_deg=turned)
         made.append(each.related([]).model_copy(update={"pose": pose}))
         if target.arrangement == "stack":
             z += height
         else:
-            at += _deep(each) + ROW_SHARE * height
+            at += deep(each) + ROW_SHARE * height
     return made
 
 
@@ -128,7 +129,3 @@ def _upright(item: PlanObject) -> float:
     if item.primitive == "sphere" or item.relation("LIES-ALONG-Y") is not None:
         return 2 * item.size[0]
     return tall(item) + (2 * item.size[0] if item.primitive == "capsule" else 0.0)
-
-
-def _deep(item: PlanObject) -> float:
-    return item.size[0] if item.primitive == "box" else 2 * item.size[0]

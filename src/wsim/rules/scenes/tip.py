@@ -8,6 +8,7 @@ from wsim.defaults import GRAVITY
 from wsim.errors import UserError
 from wsim.plan.schema import PlanObject, Proxy, Relation
 from wsim.rules.cast import Cast, Thing
+from wsim.rules.scenes.knock import deep
 from wsim.rules.scenes.part import Part, tall, tidy
 
 SPARE = 2.0  # of the energy that lifts the middle over the edge, which the push gives
@@ -27,7 +28,7 @@ def tipped(thing: Thing, made: list[PlanObject], part: Part, cast: Cast) -> list
             f"{thing.words!r}: the builtin planner tips boxes and what stands upright; say what else hits it"
         )
     falling = made if thing.arrangement == "stack" else made[:1]
-    height, depth = sum(tall(item) for item in falling), _deep(made[0])
+    height, depth = sum(tall(item) for item in falling), deep(made[0])
     if height < SLIMMEST * depth:
         raise UserError(
             f"{thing.words!r}: {height:.3g} m high and {depth:.3g} m deep, it does not topple by itself; say what hits "
@@ -50,11 +51,11 @@ def slender(thing: Thing, item: PlanObject, cast: Cast) -> PlanObject:
     said = thing.phrase.length or thing.phrase.measures.keys() - {"mass", "density"} or thing.phrase.edges
     if said or thing.noun.asset is not None or item.primitive not in ("box", "cylinder") or thing.noun.lies:
         return item
-    if tall(item) >= SLIM * _deep(item):
+    if tall(item) >= SLIM * deep(item):
         return item
     high = round(HIGHER * max(item.size), 3)
-    deep = round(high / SLENDER, 3)
-    size = (deep, item.size[1], high) if item.primitive == "box" else (deep / 2, high)
+    thin = round(high / SLENDER, 3)
+    size = (thin, item.size[1], high) if item.primitive == "box" else (thin / 2, high)
     cast.assumptions = [one for one in cast.assumptions if one.subject != thing.words or " x " not in one.choice]
     choice = " x ".join(f"{edge:g}" for edge in size) + " m"
     cast.assume(thing.words, choice, "high against its depth, or it would slide rather than fall over")
@@ -82,10 +83,6 @@ def on_side(item: PlanObject, thing: Thing) -> PlanObject:
         raise UserError(f"{thing.words!r}: a ball has no side to lie on")
     x, y, z = item.size
     return item.model_copy(update={"construction": Proxy(primitive="box", size=(z, y, x))})
-
-
-def _deep(item: PlanObject) -> float:
-    return item.size[0] if item.primitive == "box" else 2 * item.size[0]
 
 
 def _rate(height: float, depth: float) -> float:
