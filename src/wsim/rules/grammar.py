@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cache
+from itertools import pairwise
 from typing import Any
 
 from lark import Lark, Token, Transformer, UnexpectedInput, v_args
@@ -96,7 +97,11 @@ class _Clauses(Transformer):
 
     def full(self, _meta: Any, children: list[Any]) -> Clause:
         subjects = [child for child in children if isinstance(child, Phrase)]
-        return Clause(subjects, [child for child in children if isinstance(child, Action)])
+        actions = [child for child in children if isinstance(child, Action)]
+        for before, action in pairwise(children):  # "hits a tower, which topples"
+            if isinstance(action, Action) and action is not actions[0] and _is(before, "REL"):
+                action.relative = True
+        return Clause(subjects, actions)
 
     bare = full
 
