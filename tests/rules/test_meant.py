@@ -161,3 +161,28 @@ def test_what_a_ball_rolls_down_is_the_ramp(lead):
 )
 def test_phrases_of_the_readme(sentence):
     assert plan(sentence).objectives
+
+
+# ---- a seesaw
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        "A ball falls on one end of a seesaw, and the cube on the other end goes up.",
+        "A ball drops onto the left end of a seesaw and a box of 10 kg on the right end goes up.",
+        "A ball of 2 kg falls on one end of a seesaw, and a box on the other end goes up.",
+        "A cube stands on the left end of a seesaw and a ball on the right end, and the seesaw tilts to the right.",
+    ],
+)
+def test_what_goes_down_outweighs_what_goes_up(sentence):
+    made = plan(sentence)
+    (tilts,) = (objective for objective in made.objectives if objective.kind == "tilts")
+    low = made.object(tilts.ref)
+    (high,) = (o for o in made.objects if o.state == "dynamic" and o.name not in ("seesaw", low.name))
+    assert low.mass >= 1.2 * high.mass
+    assert not any("warning" in one.choice for one in made.assumptions)
+
+
+def test_what_cannot_outweigh_the_other_end_is_warned_of():
+    made = plan("A cork ball falls on one end of a seesaw and an iron cube on the other end goes up.")
+    assert made.object("cork_ball").mass == pytest.approx(4 / 3 * math.pi * 0.1**3 * 240)  # as it was said
+    assert any(one.choice.startswith("warning") for one in made.assumptions)
