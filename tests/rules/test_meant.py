@@ -120,6 +120,25 @@ def test_a_thing_is_of_what_its_name_says(words, material):
     assert any(one.value == material for one in made.assumptions if one.kind == "material")
 
 
+# ---- what a table has
+@pytest.mark.parametrize(
+    ("sentence", "above", "beside"),
+    [
+        ("A desk with a monitor, a keyboard in front of it and a mouse.", ["monitor", "keyboard", "mouse"], []),
+        ("A table with a mug and a chair.", ["mug"], ["chair"]),
+        ("A wall with a crate.", [], ["crate"]),
+        ("A shelf with a box in front of it.", [], ["box"]),
+    ],
+)
+def test_what_a_table_has_is_on_it(sentence, above, beside):
+    made = plan(sentence)
+    table = made.object(sentence.split()[1])
+    for names, low in ((above, around(table).high[2]), (beside, 0.0)):
+        assert [around(made.object(name)).low[2] for name in names] == pytest.approx([low] * len(names), abs=1e-3)
+    if "keyboard" in above:
+        assert around(made.object("keyboard")).low[0] >= around(made.object("monitor")).high[0]
+
+
 # ---- which thing is meant
 @pytest.mark.parametrize("which", [", which topples", " that topples", ", and it topples", ", which falls over"])
 def test_which_is_what_was_named_last(which):

@@ -83,11 +83,11 @@ class _Clauses(Transformer):
         """The clauses; those after "a tank in which" say where their things are, up to the next full stop."""
         clauses: list[Clause] = []
         within: Place | None = None
-        for child in children:
+        for before, child in pairwise([None, *children]):
             if isinstance(child, Place):
                 within = child
             elif isinstance(child, Clause):
-                child.within = within
+                child.within, child.given = within, before == "with"
                 clauses.append(child)
             elif isinstance(child, tuple):  # "a chair faces a table on which a vase stands"
                 clauses += child
@@ -128,6 +128,8 @@ class _Clauses(Transformer):
         return children[0]
 
     def breaks(self, _meta: Any, children: list[Any]) -> str:
+        if [str(child) for child in children if _is(child, "BREAK")] == ["with"]:
+            return "with"
         return "stop" if any(_is(child, "BREAK") and str(child) in _STOPS for child in children) else "break"
 
     def sep(self, _meta: Any, children: list[Any]) -> str:

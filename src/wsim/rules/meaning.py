@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from wsim.assets import get
 from wsim.errors import UserError
 from wsim.rules.actions import MOVES, act, meet
 from wsim.rules.cast import Cast, Pour, Thing
 from wsim.rules.lexicon import lexicon
 from wsim.rules.phrases import Action, Clause, Phrase, Place
-from wsim.rules.places import common, stand, support
+from wsim.rules.places import CARRIED, common, do, stand, support
 from wsim.rules.reader import EACH_OTHER, Reader
 from wsim.rules.tokens import NotUnderstood
 from wsim.rules.used import check_used
@@ -45,6 +46,9 @@ def _clause(reader: Reader, clause: Clause) -> None:
             clause.actions = [_of_one(phrase, action) for action in clause.actions]
         subjects += found
         pending += found
+        if clause.given and not clause.actions:
+            _given(reader, found, phrase)
+            continue
         if phrase.places:  # "a cork ball and an iron ball in a tank": both are in it
             for thing in pending:
                 stand(reader, thing, phrase.places)
@@ -75,6 +79,22 @@ def _clause(reader: Reader, clause: Clause) -> None:
                     _say(reader, each, subjects)
     if subjects:
         reader.last = [thing for thing in subjects if thing in reader.cast.things] or reader.last
+
+
+def _given(reader: Reader, things: list[Thing], phrase: Phrase) -> None:
+    """ "A desk with a monitor, and a mouse in front of it": on the desk, but for other furniture; "it" is the last."""
+    for thing in things:
+        tables = [one for one in reader.last if one.noun.family == "furniture" and one.count == 1]
+        carrier = next((one for one in tables if one.noun.key not in UPRIGHT), None)
+        asset = get(thing.noun.asset) if thing.noun.asset is not None else None
+        small = asset is None or not asset.category.startswith(FURNITURE)
+        stand(reader, thing, phrase.places)
+        if carrier is not None and small and thing.place is None and thing.noun.family in CARRIED:
+            support(reader, thing, carrier)
+            do(thing, "rest")
+        reader.last = [thing, *reader.last]
+    for said in phrase.clauses:
+        _together(reader, things, said)
 
 
 def _last(reader: Reader, action: Action) -> Thing | None:
@@ -184,6 +204,8 @@ def _say(reader: Reader, phrase: Phrase, subjects: list[Thing]) -> None:
 
 
 PASSIVE = ("hit", "knock", "topple", "push", "touch")
+FURNITURE = "furniture"  # of the catalogue's categories: what stands beside a table, not on it
+UPRIGHT = ("wall", "post")  # on which nothing is put
 _ACTS = ("solid", "belt", "turntable", "pendulum", "seesaw", "robot", "vehicle")
 
 
