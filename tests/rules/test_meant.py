@@ -139,6 +139,39 @@ def test_what_a_table_has_is_on_it(sentence, above, beside):
         assert around(made.object("keyboard")).low[0] >= around(made.object("monitor")).high[0]
 
 
+# ---- what hangs above a table
+@pytest.mark.parametrize(
+    ("sentence", "length", "clear"),
+    [
+        ("A lamp hangs from the ceiling above a table.", 0.6, 0.3),
+        ("A lamp hangs from the ceiling above a table on a chain 1 m long.", 1.0, 0.3),
+        ("A lamp hangs on a chain 0.5 m above a table.", 0.6, 0.5),
+        ("A lamp hangs above a table on a rope, and a ball rolls.", 0.6, 0.3),
+    ],
+)
+def test_what_hangs_above_a_table_is_above_it(sentence, length, clear):
+    made = plan(sentence)
+    lamp, table, rope = (around(made.object(name)) for name in ("lamp", "table", "rope"))
+    assert [sum(ends) / 2 for ends in zip(lamp.low[:2], lamp.high[:2], strict=True)] == pytest.approx(
+        [sum(ends) / 2 for ends in zip(table.low[:2], table.high[:2], strict=True)], abs=1e-6
+    )
+    assert lamp.low[2] - table.high[2] == pytest.approx(clear, abs=1e-6)
+    assert rope.high[2] - rope.low[2] == pytest.approx(length, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        "Two lamps hang from the ceiling above a table.",
+        "A lamp hangs from the ceiling above a table with a vase on it.",
+        "A lamp hangs from the ceiling above a ball.",
+    ],
+)
+def test_what_hangs_where_it_would_touch_is_refused(sentence):
+    with pytest.raises(UserError):
+        plan(sentence)
+
+
 # ---- which thing is meant
 @pytest.mark.parametrize("which", [", which topples", " that topples", ", and it topples", ", which falls over"])
 def test_which_is_what_was_named_last(which):

@@ -42,7 +42,8 @@ def stand(reader: Reader, thing: Thing, places: list[Place]) -> None:
 def _stand_at(reader: Reader, thing: Thing, place: Place, at: Phrase) -> None:
     found = where(reader, at, thing)
     if isinstance(found, Thing):
-        if at.kind == "pronoun" and found.round:  # nothing stands on a ball: it is what that is on
+        if at.kind == "pronoun" and (found.round or found.rod is not None):
+            # Nothing stands on a ball, or on what hangs: it is what that is on, or above.
             found = found.path or found.support or found
         if place.preposition in ("in", "inside", "into"):
             put_inside(reader, thing, found)

@@ -34,6 +34,13 @@ def check_used(thing: Thing, struck: bool) -> None:
             raise NotUnderstood([thing.words], problem)
 
 
+def _hangs_above(thing: Thing) -> bool:
+    """Whether what hangs over something can be built: alone, above furniture that stands on the ground."""
+    on = thing.support
+    free = thing.count == 1 and thing.target is None and "drop" not in thing.does
+    return on is not None and on.noun.family == "furniture" and on.support is None and free
+
+
 def _bearing(thing: Thing) -> tuple[tuple[bool, str], ...]:
     """What carries it, and what it leaves: neither may be what the scenes lay out without it."""
     below, does = thing.support or thing.inside, {*thing.does}
@@ -44,7 +51,7 @@ def _bearing(thing: Thing) -> tuple[tuple[bool, str], ...]:
         (goes, "puts nothing on what moves, hangs, or is on a ramp, a belt, a turntable or a seesaw, such as"),
         (thing.off and below is None and thing.path is None, "needs to be told off what this goes"),
         (thing.off and table and "drop" in does, "lets things roll or slide off a table, but not drop on it and leave"),
-        (hangs and thing.support is not None, "hangs things beside what stands, not above it"),
+        (hangs and below is not None and not _hangs_above(thing), "hangs one thing, which hits nothing, above a table"),
     )
 
 
