@@ -144,6 +144,8 @@ def _run(reader: Reader, thing: Thing, action: Action) -> None:
 
 # ---- on a hinge
 def _swing(reader: Reader, thing: Thing, action: Action) -> None:
+    if action.verb == "hang" and thing.noun.family == "solid":
+        do(thing, "hang")
     struck: list[Place] = []
     stands: list[Place] = []  # where that is which it swings into
     for place in action.places:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from wsim.errors import UserError
-from wsim.rules.cast import Thing
+from wsim.rules.cast import CARRIERS, Thing
 from wsim.rules.goes import aim, go, movable, strike
 from wsim.rules.phrases import Action, Place
 from wsim.rules.places import common, do, put, put_inside, stand, support, where
@@ -163,6 +163,8 @@ def _land(reader: Reader, thing: Thing, action: Action, place: Place) -> None:
         put(thing, at)
     elif at.noun.family == "vessel":
         put_inside(reader, thing, at)
+    elif at.noun.family in CARRIERS:
+        raise NotUnderstood([action.words], "sets things on a belt or a turntable, and drops nothing onto it:")
     else:
         support(reader, thing, at)
 
@@ -184,8 +186,10 @@ def bounce(reader: Reader, thing: Thing, action: Action) -> None:
             continue
         elif isinstance(at, Thing) and place.preposition in ("off", "against") and at.noun.key == "wall":
             walls.append(place)
-        elif isinstance(at, Thing) and at is thing.support:
+        elif isinstance(at, Thing) and at is thing.support and not thing.off:
             continue
+        elif isinstance(at, Thing) and thing.off:
+            raise NotUnderstood([action.words], "lets what leaves a table bounce on the ground, not there:")
         elif isinstance(at, Thing):
             support(reader, thing, at)
         elif at == "ground":
@@ -195,6 +199,6 @@ def bounce(reader: Reader, thing: Thing, action: Action) -> None:
     do(thing, "bounce")
     if walls and walls[0].phrase is not None:
         aim(reader, thing, walls[0].phrase, action)
-    elif not {"drop", "throw"} & {*thing.does} and thing.target is None:
+    elif not {"drop", "throw"} & {*thing.does} and thing.target is None and not thing.off:
         put(thing, "ground")
         do(thing, "drop")

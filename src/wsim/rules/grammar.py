@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cache
+from itertools import pairwise
 from typing import Any
 
 from lark import Lark, Token, Transformer, UnexpectedInput, v_args
@@ -82,11 +83,11 @@ class _Clauses(Transformer):
         """The clauses; those after "a tank in which" say where their things are, up to the next full stop."""
         clauses: list[Clause] = []
         within: Place | None = None
-        for child in children:
+        for before, child in pairwise([None, *children]):
             if isinstance(child, Place):
                 within = child
             elif isinstance(child, Clause):
-                child.within = within
+                child.within, child.given = within, before == "with"
                 clauses.append(child)
             elif isinstance(child, tuple):  # "a chair faces a table on which a vase stands"
                 clauses += child
@@ -96,7 +97,11 @@ class _Clauses(Transformer):
 
     def full(self, _meta: Any, children: list[Any]) -> Clause:
         subjects = [child for child in children if isinstance(child, Phrase)]
-        return Clause(subjects, [child for child in children if isinstance(child, Action)])
+        actions = [child for child in children if isinstance(child, Action)]
+        for before, action in pairwise(children):  # "hits a tower, which topples"
+            if isinstance(action, Action) and action is not actions[0] and _is(before, "REL"):
+                action.relative = True
+        return Clause(subjects, actions)
 
     bare = full
 
@@ -123,6 +128,8 @@ class _Clauses(Transformer):
         return children[0]
 
     def breaks(self, _meta: Any, children: list[Any]) -> str:
+        if [str(child) for child in children if _is(child, "BREAK")] == ["with"]:
+            return "with"
         return "stop" if any(_is(child, "BREAK") and str(child) in _STOPS for child in children) else "break"
 
     def sep(self, _meta: Any, children: list[Any]) -> str:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from wsim.assets import get
 from wsim.errors import UserError
 from wsim.rules.actions import MOVES, act, meet
 from wsim.rules.cast import Cast, Pour, Thing
 from wsim.rules.lexicon import lexicon
 from wsim.rules.phrases import Action, Clause, Phrase, Place
-from wsim.rules.places import common, stand, support
+from wsim.rules.places import CARRIED, common, do, stand, support
 from wsim.rules.reader import EACH_OTHER, Reader
 from wsim.rules.tokens import NotUnderstood
 from wsim.rules.used import check_used
@@ -41,8 +42,13 @@ def _clause(reader: Reader, clause: Clause) -> None:
             scenery.append(phrase)
             continue
         found = reader.subjects(phrase, clause.actions)
+        if phrase.nth is not None and any(thing.group for thing in found):
+            clause.actions = [_of_one(phrase, action) for action in clause.actions]
         subjects += found
         pending += found
+        if clause.given and not clause.actions:
+            _given(reader, found, phrase)
+            continue
         if phrase.places:  # "a cork ball and an iron ball in a tank": both are in it
             for thing in pending:
                 stand(reader, thing, phrase.places)
@@ -58,8 +64,11 @@ def _clause(reader: Reader, clause: Clause) -> None:
         reader.spoken = [reader.thing(phrase) for phrase in named]
     if any(phrase.kind not in ("choice", "pronoun", "part") for phrase in clause.subjects):
         reader.spoken, reader.chosen = [*subjects], []
-    for action in clause.actions:
-        if not _of_scenery(reader, clause, scenery, subjects, action):
+    for number, action in enumerate(clause.actions):
+        last = _last(reader, clause.actions[number - 1]) if action.relative and number else None
+        if last is not None:
+            _together(reader, [last], action)
+        elif not _of_scenery(reader, clause, scenery, subjects, action):
             _together(reader, subjects, action)
         for phrase in _places_of(action):
             _say(reader, phrase, subjects)
@@ -72,13 +81,54 @@ def _clause(reader: Reader, clause: Clause) -> None:
         reader.last = [thing for thing in subjects if thing in reader.cast.things] or reader.last
 
 
+def _given(reader: Reader, things: list[Thing], phrase: Phrase) -> None:
+    """ "A desk with a monitor, and a mouse in front of it": on the desk, but for other furniture; "it" is the last."""
+    for thing in things:
+        tables = [one for one in reader.last if one.noun.family == "furniture" and one.count == 1]
+        carrier = next((one for one in tables if one.noun.key not in UPRIGHT), None)
+        asset = get(thing.noun.asset) if thing.noun.asset is not None else None
+        small = asset is None or not asset.category.startswith(FURNITURE)
+        stand(reader, thing, phrase.places)
+        if carrier is not None and small and thing.place is None and thing.noun.family in CARRIED:
+            support(reader, thing, carrier)
+            do(thing, "rest")
+        reader.last = [thing, *reader.last]
+    for said in phrase.clauses:
+        _together(reader, things, said)
+
+
+def _last(reader: Reader, action: Action) -> Thing | None:
+    """What an action names last, of which "which" speaks; None of the tank, the water and the ground."""
+    named = [phrase for phrase in _places_of(action) if phrase.kind == "group" or phrase.kind in lexicon().nouns]
+    return reader.thing(named[-1]) if named and not reader.is_scenery(named[-1]) else None
+
+
+def _of_one(phrase: Phrase, action: Action) -> Action:
+    """What one of a row is said to do, where it comes to the same for the row: the first tips it, and each of it falls.
+
+    Raises:
+        NotUnderstood: The row would be planned as if all of it did so.
+    """
+    agents = [place for place in action.places if place.preposition == "by"]
+    plain = action.target is None and action.particle != "off" and len(agents) == len(action.places)
+    if plain and action.verb in PASSIVE and phrase.nth == 1:
+        pushed = action.verb == "push" and not agents
+        return replace(action, particle="over") if pushed else action
+    if plain and not agents and action.verb in ("topple", "fall"):
+        return action
+    raise NotUnderstood(
+        [f"{phrase.words} {action.words}"], "lets one of a row be tipped or fall over with the rest, not"
+    )
+
+
 def _together(reader: Reader, subjects: list[Thing], action: Action) -> None:
     """Let some things do what is said: two that go at each other as a pair, the rest each for itself."""
     each_other = [place for place in action.places if place.phrase is not None and place.phrase.part in EACH_OTHER]
     meets = action.verb in ("collide", "hit", "touch") and not any(
         p.preposition in ("with", "into") for p in action.places
     )
-    if (meets and (action.target is None or action.target.part in EACH_OTHER)) or (
+    agents = [place for place in action.places if place.preposition == "by" and place.phrase is not None]
+    if (not agents and meets and (action.target is None or action.target.part in EACH_OTHER)) or (
         each_other and action.verb in ("roll", "slide", "move", "push", "run")
     ):
         if not (meets and any("meet" in thing.does for thing in subjects)):
@@ -86,10 +136,12 @@ def _together(reader: Reader, subjects: list[Thing], action: Action) -> None:
         elif not all(common(reader, thing, place) for place in action.places for thing in subjects):
             raise NotUnderstood([action.words], "lets two things collide, but not so:")
         return
-    agents = [place for place in action.places if place.preposition == "by" and place.phrase is not None]
     if agents and action.target is None and action.verb in PASSIVE:
         _by(reader, subjects, action, agents[0])
         return
+    back = any(place.phrase is not None and place.phrase.kind == "pronoun" for place in action.places)
+    if back and action.verb in ("roll", "slide", "go") and any(thing.noun.family == "solid" for thing in subjects):
+        subjects = [thing for thing in subjects if thing.noun.family == "solid"]  # "a ramp, and a ball rolls down it"
     for thing in subjects:
         carrier = thing.support if thing.support is not None and thing.support.noun.family == "turntable" else None
         if action.verb == "run" and carrier is not None:
@@ -144,7 +196,7 @@ def _say(reader: Reader, phrase: Phrase, subjects: list[Thing]) -> None:
         return
     if reader.is_scenery(phrase):
         raise NotUnderstood([phrase.words], "lets blocks and balls act, but not a tank, water or the ground")
-    thing = reader.thing(phrase) if phrase.kind != "group" else None
+    thing = reader.thing(phrase) if phrase.kind != "group" or phrase.members is not None else None
     for said in phrase.clauses:
         own = thing is not None and (thing.noun.family in _ACTS or said.verb in ("run", "move", "tilt"))
         for one in [thing] if own and thing is not None else subjects:
@@ -152,6 +204,8 @@ def _say(reader: Reader, phrase: Phrase, subjects: list[Thing]) -> None:
 
 
 PASSIVE = ("hit", "knock", "topple", "push", "touch")
+FURNITURE = "furniture"  # of the catalogue's categories: what stands beside a table, not on it
+UPRIGHT = ("wall", "post")  # on which nothing is put
 _ACTS = ("solid", "belt", "turntable", "pendulum", "seesaw", "robot", "vehicle")
 
 

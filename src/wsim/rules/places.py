@@ -42,6 +42,9 @@ def stand(reader: Reader, thing: Thing, places: list[Place]) -> None:
 def _stand_at(reader: Reader, thing: Thing, place: Place, at: Phrase) -> None:
     found = where(reader, at, thing)
     if isinstance(found, Thing):
+        if at.kind == "pronoun" and (found.round or found.rod is not None):
+            # Nothing stands on a ball, or on what hangs: it is what that is on, or above.
+            found = found.path or found.support or found
         if place.preposition in ("in", "inside", "into"):
             put_inside(reader, thing, found)
         elif found.noun.family in ("rod", "rope"):
@@ -57,10 +60,10 @@ def _stand_at(reader: Reader, thing: Thing, place: Place, at: Phrase) -> None:
         do(thing, "rest")
     elif found == "water":
         put(thing, "water")
-        if place.preposition == "on" or part(at) in ("surface", "top"):
-            do(thing, "float")
-        elif part(at) == "bottom":
+        if part(at) == "bottom":
             do(thing, "sink")
+        elif place.preposition == "on" or part(at) in ("surface", "top"):
+            do(thing, "float")
     else:
         put(thing, "ground")
         do(thing, "rest")
@@ -86,6 +89,9 @@ def common(reader: Reader, thing: Thing, place: Place) -> bool:
         if thing.path.phrase.angle not in (None, place.value):
             raise UserError(f"{place.words!r}: the prompt gives the ramp {thing.path.phrase.angle:g} degrees before")
         thing.path.phrase.angle = place.value
+    elif place.preposition == "by_way":
+        if not reader.cast.family("vehicle"):
+            raise NotUnderstood([place.words], "sets things beside the way of a vehicle, but not so:")
     elif place.preposition == "stacked":
         arrange(reader, thing, "stack")
     elif place.preposition in MANNERS:

@@ -16,6 +16,7 @@ from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.asked.tied import tied
 from wsim.plan.layout import layout
+from wsim.plan.layout.bodies import around
 from wsim.plan.layout.land import set_down
 from wsim.plan.schema import Plan, SimulationPlan
 from wsim.plan.views import cameras
@@ -69,7 +70,7 @@ def plan(prompt: str) -> Plan:
     }
     joined = {name for joint in scene.joints for name in (joint.child, joint.parent) if name is not None}
     placed = layout(Plan(objects=themselves(scene.objects, scene.names, cast, joined), **common))
-    _hang(scene, placed)
+    _hang(scene, placed, cast)
     whole = set_down(Plan(objects=[*placed.objects, *scene.posed], joints=scene.joints, **common))
     return tied(
         Plan.model_validate(
@@ -110,11 +111,20 @@ def _scene(cast: Cast) -> Part:
     return scene
 
 
-def _hang(scene: Part, placed: Plan) -> None:
-    """Set what hangs beside all the rest, once that has its place."""
+def _hang(scene: Part, placed: Plan, cast: Cast) -> None:
+    """Set what hangs beside all the rest, or above what it is said to, once that has its place."""
     beside = Part(objects=[item for item in placed.objects if item.primitive != "ground"])
     beside.posed = [*scene.posed]
     for hung in scene.hung:
+        over = next((one for one in cast.things if id(one) in hung.names and one.support is not None), None)
+        if over is not None and over.support is not None:
+            crowd = [one.words for one in cast.things if one.support is over.support and one is not over]
+            if crowd:
+                raise UserError(
+                    f"{over.words!r}: the builtin planner hangs it above a bare table; leave {crowd[0]!r} out"
+                )
+            scene.add(hung.above(around(placed.object(scene.names[id(over.support)][-1]))))
+            continue
         moved = hung.shifted(_free(beside, hung))
         scene.add(moved)
         beside.add(moved)

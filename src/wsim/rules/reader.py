@@ -141,7 +141,7 @@ class Reader:
         """The thing that a phrase names: one spoken of before, or a new one."""
         if phrase.kind == "choice" or (phrase.nth is not None and phrase.definite):
             found = self.subjects(phrase, [])
-            if len(found) != 1:
+            if len(found) != 1 or (found[0].group and phrase.nth not in (None, 1)):
                 raise NotUnderstood([phrase.words], "cannot tell which of them this is")
             return found[0]
         if id(phrase) not in self.named:
@@ -159,7 +159,7 @@ class Reader:
                 return known[0]
         described = phrase
         if phrase.kind == "group":
-            _check_adjectives(replace(phrase, shape=None))
+            _check_adjectives(replace(phrase, shape=None, clauses=[]))
             if phrase.members is None:
                 raise NotUnderstood(
                     [phrase.words], "has to be told what this is made of, as in 'a stack of five boxes'"

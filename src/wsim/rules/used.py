@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from wsim.rules.cast import CARRIERS, Beside, Thing
+from wsim.rules.places import CARRIED
 from wsim.rules.tokens import NotUnderstood
 
 _GOES = {"roll", "slide", "push", "throw", "meet", "ride", "run", "patrol", "drive", "cross"}
@@ -28,9 +29,30 @@ def check_used(thing: Thing, struck: bool) -> None:
     for beside in thing.beside:
         if beside.loose and (posed(thing) or posed(beside.ref)):
             beside.predicate = "beside"  # the parts of a scene are side by side
-    for given, problem in (*_adjectives(thing), *_manners(thing, struck)):
+    for given, problem in (*_adjectives(thing), *_manners(thing, struck), *_bearing(thing)):
         if given:
             raise NotUnderstood([thing.words], problem)
+
+
+def _hangs_above(thing: Thing) -> bool:
+    """Whether what hangs over something can be built: alone, above furniture that stands on the ground."""
+    on = thing.support
+    free = thing.count == 1 and thing.target is None and "drop" not in thing.does
+    return on is not None and on.noun.family == "furniture" and on.support is None and free
+
+
+def _bearing(thing: Thing) -> tuple[tuple[bool, str], ...]:
+    """What carries it, and what it leaves: neither may be what the scenes lay out without it."""
+    below, does = thing.support or thing.inside, {*thing.does}
+    goes = below is not None and below.noun.family in CARRIED and (posed(below) or bool(_GOES & {*below.does}))
+    table = thing.support is not None and thing.support.noun.family != "belt"
+    hangs = thing.rod is not None or thing.noun.family == "pendulum"
+    return (
+        (goes, "puts nothing on what moves, hangs, or is on a ramp, a belt, a turntable or a seesaw, such as"),
+        (thing.off and below is None and thing.path is None, "needs to be told off what this goes"),
+        (thing.off and table and "drop" in does, "lets things roll or slide off a table, but not drop on it and leave"),
+        (hangs and below is not None and not _hangs_above(thing), "hangs one thing, which hits nothing, above a table"),
+    )
 
 
 def _sides(thing: Thing) -> list[Beside]:

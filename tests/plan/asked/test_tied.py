@@ -21,6 +21,11 @@ TIED = {
     "A crate slides at 3 m/s with a friction of 0.2 between the crate and the floor.": {
         "slides": [0], "3 m/s": ["crate.velocity"], "0.2": ["ground.friction", "crate.friction"],
     },
+    "A log rolls down a ramp and comes to rest against a post.": {"rolls": [0], "comes": [2], "rest": [2]},
+    "A rubber ball is dropped from 1 m and bounces three times.": {
+        "dropped": [0, 1], "1 m": ["rubber_ball.place"], "bounces": [0, 1], "three": [1],
+    },
+    "A cork floats in a tank of water while a stone lies on the bottom.": {"floats": [0], "lies": [1]},
 }  # fmt: skip
 
 
@@ -38,3 +43,9 @@ def test_what_nothing_shows_is_said_and_not_passed_over() -> None:
     other = "A steel ball rolls down a ramp of 25 degrees and hits a wall."
     asked = made.model_copy(update={"prompt": other, "clauses": []})
     assert not_checked(tied(asked)) == [f"'25 degrees': {UNFOUND}", f"'hits': {UNASKED}"]
+
+
+def test_a_count_of_things_is_not_how_often() -> None:
+    made = plan("Three rubber balls are dropped from 1 m.")
+    asked = made.model_copy(update={"prompt": "Three rubber balls are dropped from 1 m, three times."})
+    assert not_checked(tied(asked)) == [f"'three': {UNFOUND}"]

@@ -8,14 +8,18 @@ from typing import TYPE_CHECKING
 from wsim.plan.asked.demands import REQUIRED, Demand, demands, tokens
 from wsim.plan.asked.shown import SHOWN_BY, shows
 from wsim.plan.asked.stated import FIELDS, asks, close, values
-from wsim.plan.asked.vocabulary import CAUSES
+from wsim.plan.asked.vocabulary import CAUSES, stem
 from wsim.plan.schema.clause import OF_JOINTS, WHOLE, Clause
+from wsim.plan.schema.formula import Then
 
 if TYPE_CHECKING:
-    from wsim.plan.schema import Plan, PlanObject
+    from wsim.plan.schema import Objective, Plan, PlanObject
 
 UNASKED = "no objective of the plan asks for it"
 UNFOUND = "no number that the plan states is this one"
+_STILL = ("to rest", "to a stop", "to a halt", "to a standstill")
+_LIES = "rests_on stays_on stays_inside stays_within contained_in lies_on supported_by settles upright"
+_STATES = dict.fromkeys(("lie", "sit", "rest", "stand"), frozenset(_LIES.split())) | {"weigh": frozenset[str]()}
 _WITHOUT_UNIT = ("friction", "restitution", "rolling")
 
 
@@ -40,8 +44,12 @@ def _evidence(plan: Plan, demand: Demand) -> Iterator[int | str]:
     if demand.kind == "number":
         yield from _of_number(plan, demand)
         return
-    shown = SHOWN_BY.get(demand.base)
+    base = _base(plan, demand)
+    shown = SHOWN_BY.get(base, _STATES.get(base))
     numbers = [k for k, each in enumerate(plan.objectives) if shown is None or shows(each, shown)]
+    if base in _STATES:  # that the water stays in its tank is not that something lies there
+        fluids = {item.name for item in plan.objects if item.state == "fluid"}
+        numbers = [k for k in numbers if plan.objectives[k].object not in fluids]
     yield from numbers
     if not numbers and demand.base in CAUSES:
         for item in plan.objects:
@@ -49,8 +57,16 @@ def _evidence(plan: Plan, demand: Demand) -> Iterator[int | str]:
             fields |= {"spin": bool(item.angular_velocity_deg), "actuation": bool(item.registration.actuation)}
             yield from (f"{item.name}.{field}" for field, has in fields.items() if has)
         yield from (f"{joint.name}.drive" for joint in plan.joints if joint.drive is not None)
-    elif not numbers and demand.kind == "state":
+    elif not numbers and demand.kind == "state" and base == demand.base:
         yield from (item.name for item in plan.objects if item.primitive != "ground")
+
+
+def _base(plan: Plan, demand: Demand) -> str:
+    """A verb as it is meant: "comes to rest" is one verb of two words that would each be another alone."""
+    said = [token.text for token in tokens(plan.prompt) if not token.stops]
+    k = demand.first - (demand.base == "rest" and said[demand.first - 1 : demand.first] == ["to"]) * len(("to", "come"))
+    comes = k >= 0 and stem(said[k]) == "come" and " ".join(said[k + 1 : k + 4]).startswith(_STILL)
+    return "stop" if comes and demand.base in ("come", "rest", "stop", "halt") else demand.base
 
 
 def _of_number(plan: Plan, demand: Demand) -> Iterator[int | str]:
@@ -68,9 +84,24 @@ def _of_number(plan: Plan, demand: Demand) -> Iterator[int | str]:
         yield from (k for k, each in enumerate(plan.objectives) if asks(each, demand))
     else:
         named = [item.name for item in plan.objects if _counted(item, demand)]
-        yield from named or _as_many(plan, demand)
+        if _is_often(plan, demand):
+            yield from (k for k, each in enumerate(plan.objectives) if _as_often(each, demand))
+        else:
+            yield from named or _as_many(plan, demand)
     if demand.unit == "s" and close(plan.simulation.duration, demand):
         yield f"{WHOLE}.duration"
+
+
+def _is_often(plan: Plan, demand: Demand) -> bool:
+    """Whether a number says how often: "three times", "twice"."""
+    said = [token.text for token in tokens(plan.prompt) if not token.stops]
+    return said[demand.last] == "twice" or said[demand.last + 1 : demand.last + 2] == ["times"]
+
+
+def _as_often(objective: Objective, demand: Demand) -> bool:
+    """Whether an objective has as many events, one after the other."""
+    nodes = objective.formula.walk() if objective.formula is not None else ()
+    return any(isinstance(node, Then) and len(node.events) == demand.value for node in nodes)
 
 
 def _counted(item: PlanObject, demand: Demand) -> bool:

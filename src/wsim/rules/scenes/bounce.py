@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import combinations_with_replacement
 
 from wsim.plan.schema import Contact, Objective, Plan, PlanObject
@@ -10,6 +11,7 @@ from wsim.plan.schema.formula_contact import CollidesWith
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.places import SURFACES
 from wsim.rules.scenes.lasting import asked, to_and_fro
+from wsim.rules.scenes.motion import item_of, top
 from wsim.rules.scenes.part import Part, fall_time
 
 HARDLY = 0.2  # a restitution below which a ball that falls from 0.5 m comes up by 2 cm
@@ -28,14 +30,16 @@ def _told(thing: Thing) -> float | None:
 
 def bounce(thing: Thing, item: PlanObject, on: PlanObject, part: Part, cast: Cast) -> list[Objective]:
     """That it comes off what it falls on as fast as the restitution has it; the time of its first bounces is noted."""
-    value = returned(thing, item, on, thing.support, cast)
-    time = fall_time(thing.drop_height or 0.0)
+    value = returned(thing, item, on, None if thing.off else thing.support, cast)
+    lead, time = _comes_down(thing, item, part)
     if value < HARDLY:
         choice = f"warning: with a restitution of {value:g} it comes up to {value**2:.1%} of its height"
         cast.assume(thing.words, choice, "the plan asks for what the prompt says")
     seen = max(SEEN, thing.times or 0)
     part.frame_rate = max(part.frame_rate, QUICK if thing.times else 0.0)
-    part.duration = max(part.duration, round(time * (1 + 2 * sum(value**k for k in range(1, seen + 1))) + 0.5, 1))
+    part.duration = max(
+        part.duration, round(lead + time * (1 + 2 * sum(value**k for k in range(1, seen + 1))) + 0.5, 1)
+    )
     sentence = f"{item.name} bounces off {on.name} with a restitution of {value:g}."
     formula = CollidesWith(object=item.name, ref=on.name, restitution=value)
     often = []
@@ -45,6 +49,14 @@ def bounce(thing: Thing, item: PlanObject, on: PlanObject, part: Part, cast: Cas
         )
         often.append(asked(item.name, f"{item.name} bounces off {on.name} {thing.times} times.", again))
     return [asked(item.name, sentence, formula), *often, *to_and_fro(thing, item.name, "z", value**2, cast)]
+
+
+def _comes_down(thing: Thing, item: PlanObject, part: Part) -> tuple[float, float]:
+    """How long it goes along what it leaves, and how long it then falls for [s]."""
+    if not thing.off or thing.support is None:
+        return 0.0, fall_time(thing.drop_height or 0.0)
+    carrier = item_of(part.names[id(thing.support)][-1], part)
+    return max(carrier.size[:2]) / 2 / max(math.hypot(*item.velocity), 0.1), fall_time(top(carrier.name, part))
 
 
 def returned(thing: Thing, item: PlanObject, on: PlanObject, other: Thing | None, cast: Cast) -> float:

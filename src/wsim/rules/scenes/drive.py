@@ -159,7 +159,8 @@ def _sort(asked: _Drive, other: Thing) -> None:
     kinds |= dict.fromkeys(ROCKS, asked.rocks) | dict.fromkeys(TREES, asked.trees)
     found = kinds.get(category or other.kind)
     phrase = other.phrase
-    own = (phrase.material, phrase.color, phrase.scale, phrase.length, phrase.measures, phrase.edges, phrase.places)
+    places = [place for place in phrase.places if place.preposition != "by_way"]
+    own = (phrase.material, phrase.color, phrase.scale, phrase.length, phrase.measures, phrase.edges, places)
     moves = {*other.does} - {"rest"} or other.beside or other.support or other.target or other.group
     if found is None or any(own) or moves or (other.noun.family == "land" and other.count > 1):
         raise UserError(

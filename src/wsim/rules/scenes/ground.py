@@ -187,6 +187,8 @@ def _place(thing: Thing, cast: Cast, taken: set[str], part: Part, ends: _Ends) -
             surface = next(o for o in [*part.objects, ground_object()] if o.name == (below or "ground"))
             part.objectives += bounce(thing, item, surface, part, cast)
             continue
+        if thing.off and "bounce" in thing.does:
+            part.objectives += bounce(thing, item, ground_object(cast.ground), part, cast)
         part.objectives += _objectives(thing, item, at, last=index == len(made) - 1, cast=cast)
         part.objectives += _on_both(thing, item.name, part)
 

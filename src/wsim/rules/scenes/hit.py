@@ -185,8 +185,11 @@ def _ask(thing: Thing, target: Thing, item: PlanObject, met: str, cast: Cast, pa
     if "topple" not in target.does:  # which says more than that it is hit
         _collision(item.name, met, part)
     if "still" in thing.does:
-        sentence = f"{item.name} comes to rest."
-        part.objectives.append(Objective(kind="settles", object=item.name, sentence=sentence))
+        part.objectives.append(_comes_to_rest(item.name))
+
+
+def _comes_to_rest(name: str) -> Objective:
+    return Objective(kind="settles", object=name, sentence=f"{name} comes to rest.")
 
 
 def _run_up(slides: bool, speed: float, friction: float) -> float:
@@ -234,9 +237,39 @@ def struck(thing: Thing, part: Part, ramps: Part) -> None:
         if item.name == first:
             rows = [row for row in item.relations if row.predicate not in ("LEFT-OF", "FRONT-OF")]
             part.objects[index] = item.related([*rows, Relation(predicate="FRONT-OF", ref=ramp, gap=FOOT_DISTANCE)])
+    if "stop" in thing.does:
+        _stop_short(thing, part, ramps)
+        return
+    item = next(item for item in ramps.posed if item.name == part.names[id(thing)][0])
     if "topple" not in target.does:
-        item = next(item for item in ramps.posed if item.name == part.names[id(thing)][0])
         _collision(item.name, _met(item, part.names[id(target)], target, part), part)
+    if "still" in thing.does:
+        part.objectives.append(_comes_to_rest(item.name))
+
+
+def _stop_short(thing: Thing, part: Part, ramps: Part) -> None:
+    """Stand what something stops before so far from the ramp's foot that friction stops it on its way."""
+    assert thing.target is not None and thing.path is not None
+    item = next(item for item in ramps.posed if item.name == part.names[id(thing)][0])
+    slab = next(item for item in ramps.objects if item.name == part.names[id(thing.path)][0])
+    assert slab.pose is not None
+    turn, friction = (
+        math.radians(slab.pose.rotation_deg[1]),
+        pair_friction(item, slab, thing.said("friction", thing.path)),
+    )
+    level = pair_friction(item, ground_object(), thing.said("friction", None))
+    pull = GRAVITY * (math.sin(turn) - friction * math.cos(turn))
+    speed = math.sqrt(math.hypot(*item.velocity) ** 2 + 2 * max(pull, 0.0) * slab.size[0])
+    if not level:
+        raise UserError(f"{thing.words!r}: without friction it never stops; give a friction above 0")
+    gap = round(STOP_ROOM * stopping_distance(speed, level) + _deep(item), 2)
+    first = part.names[id(thing.target)][0]
+    for index, one in enumerate(part.objects):
+        if one.name == first:
+            rows = [row.model_copy(update={"gap": gap}) if row.ref == slab.name else row for row in one.relations]
+            part.objects[index] = one.related(rows)
+    part.duration = max(part.duration, ramps.duration, round(3.0 + speed / (level * GRAVITY), 1))
+    part.objectives.append(stops(item.name, first))
 
 
 def _met(item: PlanObject, names: list[str], target: Thing, part: Part) -> str:

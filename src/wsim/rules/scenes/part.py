@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from wsim.defaults import GRAVITY
 from wsim.plan.layout.bodies import around
+from wsim.plan.layout.boxes import Box
 from wsim.plan.schema import CameraPlan, Contact, Joint, Objective, PlanObject, Vec3
 
 MOST_SPEED = 50.0  # that the prompt may give [m/s]
@@ -73,7 +74,14 @@ class Part:
 
     def shifted(self, y: float) -> Part:
         """The part moved along Y [m]: all of it that has a pose."""
-        return replace(self, objects=[_moved(o, y) for o in self.objects], posed=[_moved(o, y) for o in self.posed])
+        return self._by((0.0, y, 0.0))
+
+    def above(self, box: Box) -> Part:
+        """The part moved onto the middle of a box's top, which is then its ground."""
+        return self._by(((box.low[0] + box.high[0]) / 2, (box.low[1] + box.high[1]) / 2, box.high[2]))
+
+    def _by(self, way: Vec3) -> Part:
+        return replace(self, objects=[_moved(o, way) for o in self.objects], posed=[_moved(o, way) for o in self.posed])
 
     @property
     def span(self) -> tuple[float, float]:
@@ -82,11 +90,12 @@ class Part:
         return min((box.low[1] for box in boxes), default=0.0), max((box.high[1] for box in boxes), default=0.0)
 
 
-def _moved(item: PlanObject, y: float) -> PlanObject:
-    if item.pose is None or not y:
+def _moved(item: PlanObject, way: Vec3) -> PlanObject:
+    if item.pose is None or not any(way):
         return item
-    at = item.pose.position
-    return item.model_copy(update={"pose": item.pose.model_copy(update={"position": (at[0], tidy(at[1] + y), at[2])})})
+    x, y, z = item.pose.position
+    at = (tidy(x + way[0]), tidy(y + way[1]), tidy(z + way[2]))
+    return item.model_copy(update={"pose": item.pose.model_copy(update={"position": at})})
 
 
 def times(direction: Vec3, speed: float) -> Vec3:

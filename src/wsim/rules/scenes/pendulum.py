@@ -64,8 +64,10 @@ def _hang(hanging: Hanging, cast: Cast, taken: set[str]) -> Part:
     thing, length, part = hanging.thing, hanging.length, Part()
     angle = _angle(thing, cast)
     struck = stand_before(thing, hanging.item, part, cast, taken) if thing.target is not None else None
-    height = round(length + hanging.half + CLEARANCE, 3) if struck is None else tidy(struck.height + length)
-    cast.assume(thing.words, f"hangs from a hinge {height:g} m above the ground", "so that it clears the ground")
+    clear = CLEARANCE if thing.drop_height is None else thing.drop_height
+    height = round(length + hanging.half + clear, 3) if struck is None else tidy(struck.height + length)
+    below = "the ground" if thing.support is None else thing.support.words
+    cast.assume(thing.words, f"hangs from a hinge {height:g} m above {below}", f"so that it clears {below}")
     turn = math.radians(-angle if struck is not None else angle)
     rod, body = _pose(hanging, turn, height, cast, taken)
     part.posed += [rod, body]

@@ -20,6 +20,9 @@ HINGE_GAP = 0.005  # between a seesaw's plank and what carries it [m]
 RIDER_SHARE = 0.8  # of the half length, from the hinge to what is on a seesaw
 DROP_HEIGHT = 0.3  # [m]
 LEVEL = 4.0  # that a level plank leans at most [deg]
+OUTWEIGHS, TWICE = 1.2, 2.0  # what goes down against what goes up: at least, and where a mass is chosen
+Load = tuple[Thing, PlanObject, str]  # what is on it, and at which end
+_OTHER = {"left": "right", "right": "left"}
 SIGN = {"left": -1.0, "right": 1.0, "middle": 0.0}  # along X, as the side camera sees it
 
 
@@ -41,10 +44,10 @@ def _seesaw(seesaw: Thing, cast: Cast, taken: set[str]) -> Part:
     plank = _plank(seesaw, part, cast, taken)
     sides = _sides(riders, seesaw, cast)
     loads = []
-    for thing, places in sides:
-        for item, side in zip(bodies(thing, cast, taken), places, strict=True):
-            loads.append((thing, _ride(thing, item, side, plank, part, cast), side))
-            part.names.setdefault(id(thing), []).append(item.name)
+    ridden = [(one, item, end) for one, ends in sides for item, end in zip(bodies(one, cast, taken), ends, strict=True)]
+    for thing, item, side in _weighed(seesaw, ridden, cast):
+        loads.append((thing, _ride(thing, item, side, plank, part, cast), side))
+        part.names.setdefault(id(thing), []).append(item.name)
     _ask(seesaw, plank, loads, part, cast)
     return part
 
@@ -91,6 +94,38 @@ def _sides(riders: list[Thing], seesaw: Thing, cast: Cast) -> list[tuple[Thing, 
     return made
 
 
+def _weighed(seesaw: Thing, loads: list[Load], cast: Cast) -> list[Load]:
+    """What is on it, so heavy that the end goes down that is said to, where the prompt leaves a mass of two open."""
+    falls = [side for thing, _, side in loads if "drop" in thing.does]
+    down = seesaw.side if seesaw.side in ("left", "right") else falls[0] if len(falls) == 1 else None
+    level = "level" in seesaw.does or any("level" in one.manners for one in (seesaw, *(load[0] for load in loads)))
+    low, high = ([load for load in loads if load[2] == end] for end in (down, _OTHER.get(down or "")))
+    if level or len(low) != 1 or len(high) != 1:
+        return loads
+    heavy, light = low[0][1].mass or 0.0, high[0][1].mass or 0.0
+    if heavy >= OUTWEIGHS * light:
+        return loads
+    for load, mass in ((low[0], TWICE * light), (high[0], heavy / TWICE)):
+        thing, item, side = load
+        if not _is_open(thing):
+            continue
+        mass = round(mass, 2)
+        cast.assume(thing.words, f"weighs {mass:g} kg", f"so that the {down} end of the seesaw goes down")
+        weighed = item.model_copy(update={"registration": item.registration.model_copy(update={"mass": mass})})
+        return [(thing, weighed, side) if one is load else one for one in loads]
+    if heavy < light:
+        why = f"{low[0][1].name} weighs {heavy:.3g} kg, and {high[0][1].name} {light:.3g} kg"
+        cast.assume(seesaw.words, f"warning: its {_OTHER[down or '']} end goes down, or comes down again", why)
+    return loads
+
+
+def _is_open(thing: Thing) -> bool:
+    """Whether the prompt leaves it open how heavy a thing is; what the catalogue has weighs what it does."""
+    phrase = thing.phrase
+    said = phrase.material or phrase.weight or {"mass", "density"} & set(phrase.measures)
+    return not said and thing.noun.asset is None and thing.noun.material is None
+
+
 def _ride(thing: Thing, item: PlanObject, side: str, plank: PlanObject, part: Part, cast: Cast) -> PlanObject:
     """The thing at its end, or over it."""
     lying = item.relation("LIES-ALONG-Y") is not None
@@ -108,7 +143,7 @@ def _ride(thing: Thing, item: PlanObject, side: str, plank: PlanObject, part: Pa
     return part.posed[-1]
 
 
-def _ask(seesaw: Thing, plank: PlanObject, loads: list[tuple[Thing, PlanObject, str]], part: Part, cast: Cast) -> None:
+def _ask(seesaw: Thing, plank: PlanObject, loads: list[Load], part: Part, cast: Cast) -> None:
     """Which end goes down: that on which something falls, else the heavier."""
     if not loads and (seesaw.angle is not None or seesaw.side is not None or "tilt" in seesaw.does):
         raise UserError(f"{seesaw.words!r}: nothing is on it that could tilt it; name what stands or falls on it")

@@ -1,0 +1,240 @@
+"""Accepted means right: what a sentence says of one thing is planned of that thing, or the sentence is refused."""
+
+import math
+
+import pytest
+
+from wsim.defaults import GRAVITY
+from wsim.errors import UserError
+from wsim.plan.layout.bodies import around
+from wsim.rules.planner import plan
+
+
+def kinds(made, name):
+    return [objective.kind for objective in made.objectives if objective.object == name]
+
+
+def ops(made, name):
+    return {node.op for o in made.objectives if o.object == name and o.formula is not None for node in o.formula.walk()}
+
+
+# ---- on what moves
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        "A crate slides down a ramp with a mug on it.",
+        "A crate slides down a ramp while a brick lies on it, and a mug stands on the crate.",
+        "A crate rides on a conveyor and a mug stands on it.",
+        "A box rides on a turntable, and a book lies on the box.",
+        "A turntable turns with a mug on it and a marble that rolls off.",
+        "A rubber ball is dropped from 1 m onto a wooden table and then falls off it.",
+        "A ball falls onto a desk and rolls off it.",
+        "Three boxes drop onto a conveyor.",
+        "A crate is dropped from 1 m onto a conveyor and falls off its end.",
+    ],
+)
+def test_what_no_scene_builds_is_refused(sentence):
+    with pytest.raises(UserError):
+        plan(sentence)
+
+
+def test_nothing_stands_on_a_ball_so_that_it_means_the_ramp():
+    made = plan("A ball rolls down a ramp and a brick rests on it.")
+    assert "rolls_down" in kinds(made, "ball") and "stays_within" in ops(made, "brick")
+
+
+# ---- one of a row
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        "The last of ten dominoes in a row falls off the table.",
+        "A row of dominoes on a table: the last falls off the edge.",
+        "Ten dominoes stand in a row: the second is pushed.",
+        "Ten dominoes stand in a row: the first slides at 1 m/s.",
+        "Ten dominoes stand in a row and the last is hit by a ball.",
+        "A steel ball hits the last of ten dominoes.",
+    ],
+)
+def test_one_of_a_row_is_not_all_of_it(sentence):
+    with pytest.raises(UserError):
+        plan(sentence)
+
+
+@pytest.mark.parametrize("cause", ["is pushed", "is knocked over", "is pushed over", "is tipped over", "falls over"])
+@pytest.mark.parametrize("count", ["Six", "Twelve"])
+def test_the_first_of_a_row_alone_is_set_going_and_the_last_falls(count, cause):
+    made = plan(f"{count} dominoes stand in a row; the first {cause} and the last falls.")
+    going = [item.name for item in made.objects if any(item.velocity)]
+    last = max((item.name for item in made.objects if "domino" in item.name), key=lambda name: int(name.split("_")[1]))
+    assert going == ["domino_1"] and kinds(made, last) == ["topples"]
+
+
+# ---- in water
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        "A stone lies on the bottom of a tank of water.",
+        "A pine log floats in a tank of water while a stone, which weighs 2 kg, lies on the bottom.",
+        "A cork floats in a tank of water and a stone lies on the bottom of it.",
+        "A stone rests at the bottom of an aquarium.",
+    ],
+)
+def test_what_lies_on_the_bottom_does_not_float(sentence):
+    assert kinds(plan(sentence), "stone") == ["rests_on"]
+
+
+# ---- off a ramp
+@pytest.mark.parametrize("thing", ["A crate", "A steel block"])
+@pytest.mark.parametrize(("wall", "name"), [("the wall", "wall"), ("a post", "post")])
+def test_what_stops_before_a_thing_at_a_ramps_foot_has_room_to(thing, wall, name):
+    made = plan(f"{thing} slides down a ramp and stops before {wall}.")
+    item = made.object(thing.split(" ", 1)[1].replace(" ", "_"))
+    ramp = made.object("ramp")
+    turn, friction = math.radians(ramp.pose.rotation_deg[1]), 0.4  # wood and steel
+    speed = math.sqrt(2 * GRAVITY * (math.sin(turn) - friction * math.cos(turn)) * ramp.size[0])
+    room = around(made.object(name)).low[0] - around(ramp).high[0] - item.size[0]
+    assert room > speed**2 / (2 * friction * GRAVITY)
+    assert "stops_before" in ops(made, item.name) and "collides_with" not in kinds(made, item.name)
+
+
+def test_what_comes_to_rest_against_a_post_is_asked_to():
+    assert "settles" in kinds(plan("A log rolls down a ramp and comes to rest against a post."), "log")
+
+
+# ---- off a table, and of what balls are
+@pytest.mark.parametrize("ball", ["tennis ball", "basketball"])
+def test_what_bounces_after_a_table_does_so_off_the_ground(ball):
+    made = plan(f"A {ball} falls off the edge of a table and bounces on the ground.")
+    (formula,) = (o.formula for o in made.objectives if o.formula is not None)
+    item = made.object(formula.object)
+    assert (formula.op, formula.ref, formula.restitution) == ("collides_with", "ground", 0.6)
+    assert around(item).low[2] == pytest.approx(around(made.object("table")).high[2], abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("words", "material"),
+    [("tennis ball", "rubber"), ("billiard ball", "plastic"), ("bowling ball", "plastic"), ("anvil", "steel")],
+)
+def test_a_thing_is_of_what_its_name_says(words, material):
+    made = plan(f"A {words} is dropped from 0.5 m.")
+    assert any(one.value == material for one in made.assumptions if one.kind == "material")
+
+
+# ---- what a table has
+@pytest.mark.parametrize(
+    ("sentence", "above", "beside"),
+    [
+        ("A desk with a monitor, a keyboard in front of it and a mouse.", ["monitor", "keyboard", "mouse"], []),
+        ("A table with a mug and a chair.", ["mug"], ["chair"]),
+        ("A wall with a crate.", [], ["crate"]),
+        ("A shelf with a box in front of it.", [], ["box"]),
+    ],
+)
+def test_what_a_table_has_is_on_it(sentence, above, beside):
+    made = plan(sentence)
+    table = made.object(sentence.split()[1])
+    for names, low in ((above, around(table).high[2]), (beside, 0.0)):
+        assert [around(made.object(name)).low[2] for name in names] == pytest.approx([low] * len(names), abs=1e-3)
+    if "keyboard" in above:
+        assert around(made.object("keyboard")).low[0] >= around(made.object("monitor")).high[0]
+
+
+# ---- what hangs above a table
+@pytest.mark.parametrize(
+    ("sentence", "length", "clear"),
+    [
+        ("A lamp hangs from the ceiling above a table.", 0.6, 0.3),
+        ("A lamp hangs from the ceiling above a table on a chain 1 m long.", 1.0, 0.3),
+        ("A lamp hangs on a chain 0.5 m above a table.", 0.6, 0.5),
+        ("A lamp hangs above a table on a rope, and a ball rolls.", 0.6, 0.3),
+    ],
+)
+def test_what_hangs_above_a_table_is_above_it(sentence, length, clear):
+    made = plan(sentence)
+    lamp, table, rope = (around(made.object(name)) for name in ("lamp", "table", "rope"))
+    assert [sum(ends) / 2 for ends in zip(lamp.low[:2], lamp.high[:2], strict=True)] == pytest.approx(
+        [sum(ends) / 2 for ends in zip(table.low[:2], table.high[:2], strict=True)], abs=1e-6
+    )
+    assert lamp.low[2] - table.high[2] == pytest.approx(clear, abs=1e-6)
+    assert rope.high[2] - rope.low[2] == pytest.approx(length, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        "Two lamps hang from the ceiling above a table.",
+        "A lamp hangs from the ceiling above a table with a vase on it.",
+        "A lamp hangs from the ceiling above a ball.",
+    ],
+)
+def test_what_hangs_where_it_would_touch_is_refused(sentence):
+    with pytest.raises(UserError):
+        plan(sentence)
+
+
+# ---- which thing is meant
+@pytest.mark.parametrize("which", [", which topples", " that topples", ", and it topples", ", which falls over"])
+def test_which_is_what_was_named_last(which):
+    made = plan(f"A steel ball hits a tower of six bricks{which}.")
+    assert kinds(made, "brick_6") == ["topples"]
+
+
+def test_which_is_at_rest_is_what_is_hit():
+    made = plan("A red ball hits a blue ball, which is at rest.")
+    assert any(made.object("red_ball").velocity) and not any(made.object("blue_ball").velocity)
+
+
+def test_which_is_2_m_long_is_the_ramp():
+    made = plan("A crate slides down a ramp, which is 2 m long.")
+    assert made.object("ramp").size[0] == 2.0 and made.object("crate").size[0] < 1.0
+
+
+@pytest.mark.parametrize("agent", ["a steel ball", "a wooden ball"])
+def test_a_thing_is_hit_by_another(agent):
+    made = plan(f"A block is hit by {agent}.")
+    name = agent.split(" ", 1)[1].replace(" ", "_")
+    assert kinds(made, name) == ["collides_with"] and any(made.object(name).velocity)
+
+
+@pytest.mark.parametrize("lead", ["There is a ramp and", "There is a ramp.", "A ramp stands on the ground, and"])
+def test_what_a_ball_rolls_down_is_the_ramp(lead):
+    made = plan(f"{lead} {'A' if lead.endswith('.') else 'a'} ball rolls down it.")
+    assert kinds(made, "ball") == ["rolls_down"]
+
+
+# ---- what the README says it knows
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        "A Polaris leaves a dock, crosses a floating pontoon and reaches the opposite dock.",
+        "A robot patrols round an office.",
+        "An HMMWV drives 100 m over rough ground, with rocks and trees beside its way.",
+    ],
+)
+def test_phrases_of_the_readme(sentence):
+    assert plan(sentence).objectives
+
+
+# ---- a seesaw
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        "A ball falls on one end of a seesaw, and the cube on the other end goes up.",
+        "A ball drops onto the left end of a seesaw and a box of 10 kg on the right end goes up.",
+        "A ball of 2 kg falls on one end of a seesaw, and a box on the other end goes up.",
+        "A cube stands on the left end of a seesaw and a ball on the right end, and the seesaw tilts to the right.",
+    ],
+)
+def test_what_goes_down_outweighs_what_goes_up(sentence):
+    made = plan(sentence)
+    (tilts,) = (objective for objective in made.objectives if objective.kind == "tilts")
+    low = made.object(tilts.ref)
+    (high,) = (o for o in made.objects if o.state == "dynamic" and o.name not in ("seesaw", low.name))
+    assert low.mass >= 1.2 * high.mass
+    assert not any("warning" in one.choice for one in made.assumptions)
+
+
+def test_what_cannot_outweigh_the_other_end_is_warned_of():
+    made = plan("A cork ball falls on one end of a seesaw and an iron cube on the other end goes up.")
+    assert made.object("cork_ball").mass == pytest.approx(4 / 3 * math.pi * 0.1**3 * 240)  # as it was said
+    assert any(one.choice.startswith("warning") for one in made.assumptions)
