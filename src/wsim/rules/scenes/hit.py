@@ -262,7 +262,7 @@ def _stop_short(thing: Thing, part: Part, ramps: Part) -> None:
     speed = math.sqrt(math.hypot(*item.velocity) ** 2 + 2 * max(pull, 0.0) * slab.size[0])
     if not level:
         raise UserError(f"{thing.words!r}: without friction it never stops; give a friction above 0")
-    gap = round(STOP_ROOM * stopping_distance(speed, level) + _deep(item), 2)
+    gap = round(STOP_ROOM * stopping_distance(speed, level) + deep(item), 2)
     first = part.names[id(thing.target)][0]
     for index, one in enumerate(part.objects):
         if one.name == first:
