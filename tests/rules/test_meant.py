@@ -238,3 +238,14 @@ def test_what_cannot_outweigh_the_other_end_is_warned_of():
     made = plan("A cork ball falls on one end of a seesaw and an iron cube on the other end goes up.")
     assert made.object("cork_ball").mass == pytest.approx(4 / 3 * math.pi * 0.1**3 * 240)  # as it was said
     assert any(one.choice.startswith("warning") for one in made.assumptions)
+
+
+# ---- it and they
+def test_what_a_ball_rolls_along_is_the_table():
+    made = plan("A mug stands on a table, and a ball rolls along it.")
+    assert around(made.object("ball")).low[2] == pytest.approx(around(made.object("table")).high[2], abs=1e-3)
+
+
+def test_they_are_what_is_several():
+    made = plan("A conveyor carries two boxes and they fall off its end.")
+    assert all("collides_with" in kinds(made, name) for name in ("box_1", "box_2"))

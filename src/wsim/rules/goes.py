@@ -89,6 +89,8 @@ def _towards(reader: Reader, thing: Thing, action: Action, place: Place) -> None
 def _on_path(reader: Reader, thing: Thing, action: Action, place: Place) -> None:
     assert place.phrase is not None
     at = where(reader, place.phrase, thing)
+    if place.phrase.kind == "pronoun" and isinstance(at, Thing) and at.noun.family == "solid":
+        at = at.path or at.support or at  # nothing rolls along a mug: it is what that is on
     leaves = place.preposition in ("off", "via")
     if at == "ground" and place.preposition != "down" and not leaves:
         if thing.into is not None:

@@ -79,6 +79,9 @@ class Reader:
             return [self.struck]
         if not self.last or phrase.part in EACH_OTHER:
             raise NotUnderstood([phrase.words], "cannot tell what this stands for")
+        several = [one for one in self.cast.things if one.count > 1]
+        if phrase.part == "they" and several and sum(one.count for one in self.last) == 1:
+            return several[-1:]  # "a conveyor carries two boxes and they fall off"
         return self.last
 
     def it(self, phrase: Phrase, besides: Thing | None) -> Thing:
