@@ -245,3 +245,8 @@ def test_what_it_cannot_build_is_refused(said):
     with pytest.raises(UserError) as caught:
         plan(said)
     assert "\n" not in str(caught.value)
+
+
+def test_a_pendulum_has_what_it_hits_on_a_table_of_its_own():
+    made = plan("A steel ball on a rod swings into a wooden block on a table and knocks it over.")
+    assert {"table", "wooden_block"} <= {item.name for item in made.objects}

@@ -116,7 +116,8 @@ def _hang(scene: Part, placed: Plan, cast: Cast) -> None:
     beside = Part(objects=[item for item in placed.objects if item.primitive != "ground"])
     beside.posed = [*scene.posed]
     for hung in scene.hung:
-        over = next((one for one in cast.things if id(one) in hung.names and one.support is not None), None)
+        mine = [one for one in cast.things if id(one) in hung.names and one.support is not None]
+        over = next((one for one in mine if id(one.support) not in hung.names), None)  # what stands in it is not hung
         if over is not None and over.support is not None:
             crowd = [one.words for one in cast.things if one.support is over.support and one is not over]
             if crowd:
