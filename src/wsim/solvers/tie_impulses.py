@@ -165,7 +165,9 @@ class TieImpulsesC:
             rows = tuple(array.copy() for array in (data.efc_type, data.efc_id, data.efc_force, data.efc_pos))
         if len(held) and len(held[0]):
             rows = tuple(np.concatenate(both) for both in zip(rows, held, strict=True)) if rows else tuple(held)
-        self._kept.append(_Step(starts, smooth[own], span[own], np.concatenate(views), data.ctrl.copy(), rows))
+        # What is set from outside changes from step to step, and not within one.
+        told = np.concatenate([data.ctrl, data.qfrc_applied, data.xfrc_applied.ravel()])
+        self._kept.append(_Step(starts, smooth[own], span[own], np.concatenate(views), told, rows))
 
     def take(self) -> TieSumsLater:
         """The sums since the last call, which start anew."""

@@ -125,3 +125,22 @@ def test_a_schedule_whose_event_does_not_come_is_told_of(tmp_path):
 
     failed = [f for f in judge(recorded(tmp_path, waits)[1]).failures if f.check == "CheckSchedules"]
     assert [f.message for f in failed] == ["go never begins: that ball is above 1 m along X does not come in 1 s"]
+
+
+@pytest.mark.parametrize(
+    ("rate", "times", "linear"), [(60, (0.2,), False), (100, (0.2, 0.21), False), (60, (0.2, 0.25), True)]
+)
+def test_an_effort_that_jumps_between_steps_of_the_fourth_order_is_not_missed(tmp_path, rate, times, linear):
+    """Its mean over a step is its value in it: half a step of the jump was missing in the frame of the jump."""
+    scene = Scene()
+    scene.box("cart", size=(0.2,) * 3, mass=2.0, position=(0, 0, 1))
+    rail = scene.joint_prismatic("rail", None, "cart", axis="X")
+    values = [10.0 * (k + 1 - linear) for k in range(len(times))]
+    scene.schedule("pull", rail, "effort", times=times, values=values, linear=linear)
+    scene.simulation(duration=0.5, frame_rate=rate)
+    Simulation(scene.save(tmp_path / "stage.usda"), "cpu").run(tmp_path / "run.rrd")
+    recording = read(tmp_path / "run.rrd")
+    verdict = judge(recording)
+    assert verdict.status == "accepted", [(f.check, f.message) for f in verdict.failures]
+    if times == (0.2,):
+        assert recording.body_qd[-1, 0, 0] == pytest.approx(10.0 / 2.0 * 0.3, rel=1e-5)
