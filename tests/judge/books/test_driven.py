@@ -49,9 +49,9 @@ def test_what_a_drive_gives_within_a_frame_is_no_explosion(tmp_path):
 
 def test_a_drive_at_its_greatest_effort_holds_what_that_works_over_the_way():
     at = np.array([0.0, 0.9, 1.0])
-    assert held(Motor(stiffness=100.0, position=1.0), at) == pytest.approx([50.0, 0.5, 0.0])
-    assert held(Motor(stiffness=100.0, position=1.0, max_effort=20.0), at) == pytest.approx([18.0, 0.5, 0.0])
-    assert held(Motor(damping=3.0, velocity=2.0, max_effort=20.0), at) == pytest.approx([0.0, 0.0, 0.0])
+    assert held(Motor(stiffness=100.0, position=1.0), 1.0, at) == pytest.approx([50.0, 0.5, 0.0])
+    assert held(Motor(stiffness=100.0, position=1.0, max_effort=20.0), 1.0, at) == pytest.approx([18.0, 0.5, 0.0])
+    assert held(Motor(damping=3.0, velocity=2.0, max_effort=20.0), 0.0, at) == pytest.approx([0.0, 0.0, 0.0])
 
 
 def hurled(scene):

@@ -155,7 +155,8 @@ def _gap(demand: Demand, clauses: Sequence[Clause], plan: Plan) -> Gap | None:
 
 
 def _asked(clauses: Sequence[Clause], plan: Plan) -> list[Objective]:
-    return [plan.objectives[number] for clause in clauses for number in clause.objectives]
+    """The objectives that clauses name, of those that are there: the judge may be asked for some of a plan's."""
+    return [plan.objectives[n] for clause in clauses for n in clause.objectives if n < len(plan.objectives)]
 
 
 def _more_than(manner: Demand, clause: Clause) -> bool:
@@ -169,9 +170,9 @@ def _shows(clause: Clause, demand: Demand, plan: Plan) -> bool:
     if demand.kind == "state":
         return True
     if demand.kind == "number":
-        asked = any(asks(plan.objectives[number], demand) for number in clause.objectives)
+        asked = any(asks(each, demand) for each in _asked([clause], plan))
         return asked or any(states(plan, name, field, demand) for name, field in clause.things)
-    if clause.objectives:
+    if _asked([clause], plan):
         return True
     return demand.base in CAUSES and any(field in STARTS for _, field in clause.things)
 
