@@ -94,7 +94,7 @@ def test_it_goes_by_time(tmp_path) -> None:
     assert (reach.link, reach.positions, reach.times) == ("/World/worker/hand", [(1.0, 2.3, 0.2)], [1.0])
     assert (reach.straight, follow.straight, follow.start, len(follow.positions)) == (False, True, 1.0, 2)
     assert reach.rotations[0] == pytest.approx((1.0, 0.0, 0.0, 0.0))
-    (schedule,) = world.schedules
+    (schedule,) = world.joint_paths
     assert schedule.prim == "/World/worker/joints/left_finger"
     assert schedule.positions == [0.03, 0.01]
 

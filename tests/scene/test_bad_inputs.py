@@ -18,7 +18,7 @@ import pytest
 
 from tests.assets import policies
 from wsim.assets.folders import VARIABLE
-from wsim.scene import Area, Drive, Noise, Part, Road, Scene, SceneError, VehicleSpec
+from wsim.scene import Area, Drive, Event, Noise, Part, Road, Scene, SceneError, VehicleSpec
 from wsim.scene.authoring import Handle
 
 NAN, INF, HUGE = math.nan, math.inf, 1e300
@@ -55,6 +55,7 @@ KINDS: dict[str, tuple[object, ...]] = {
     "word": ("laser", "", 7, NAN, True, [], {}, np.ones(2), object()),
     "text": (7, NAN, None, [], object()),
     "flag": ("no", "", 0, 1, None, NAN, [], np.ones(2), object()),
+    "flag, if at all": ("no", "", 0, 1, NAN, [], np.ones(2), object()),
     "object": (*OBJECT, None),
     "object or the world": OBJECT,
     "joint": (*OBJECT, None, "ball", "weld"),
@@ -95,6 +96,19 @@ KINDS: dict[str, tuple[object, ...]] = {
     "times": (
         "wide", "12", 1.0, None, [], [0.0], [0.0, NAN], [0.0, -1.0], [1.0, 1.0], [1.0, 0.5], [0.0, "1"], {0.0, 1.0},
         {0: 0, 1: 1},
+    ),
+    "times of keys": (
+        "wide", "12", 1.0, None, [], [0.0, NAN], [0.0, -1.0], [1.0, 1.0], [1.0, 0.5], [0.0, "1"], {0.0, 1.0},
+        {0: 0, 1: 1},
+    ),
+    "values of keys": (
+        "wide", 1.0, None, [], [HERE], [HERE, (NAN, 0.0, 0.0)], [HERE, None], [HERE, (1.0,)],
+        [HERE, (1e300, 0.0, 0.0)], {HERE, (1.0, 0.0, 0.0)}, {0: HERE, 1: HERE},
+    ),
+    "event": (
+        "now", 1.0, Event(), Event(touch=("ball",)), Event(touch=("ball", "nobody")), Event(body="ball"),
+        Event(body="ball", axis="W", above=1.0), Event(joint="ball", above=1.0), Event(start="nobody"),
+        Event(touch=("ball", "lid"), delay=-1.0), Event(joint="hinge", above=NAN),
     ),
     "keys": (
         "wide", 1.0, [], [HERE], [(0.0, 0.0, 0.0),
@@ -302,6 +316,13 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
         {"a": "ball", "b": "lid", "friction": 0.1},
         {"a": "object", "b": "object", "friction": "coefficient", "restitution": "share", "rolling": "share"},
     ),
+    "schedule": (
+        {"name": "new", "what": "ball", "quantity": "force", "times": (0.0, 1.0), "values": (HERE, (1.0, 0.0, 0.0))},
+        {
+            "name": "new parameter", "what": "object", "quantity": "word", "times": "times of keys",
+            "values": "values of keys", "linear": "flag, if at all", "point": "three numbers", "after": "event",
+        },
+    ),
     "joint_fixed": ({"name": "new", "parent": None, "child": "ball"}, {**TIED, **STRENGTH}),
     "joint_spherical": (
         {"name": "new", "parent": None, "child": "ball"}, {**TIED, "break_force": "number > 0",
@@ -351,7 +372,7 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
         {
             "name": "new name", "eye": "three numbers", "target": "three numbers", "fov": "number > 0",
             "width": "whole number", "height": "whole number",
-            "follows": "body that moves, or the world", "turns": "flag",
+            "follows": "body that moves, or the world", "turns": "flag", "fixed": "flag",
         },
     ),
     "light": (

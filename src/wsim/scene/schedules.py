@@ -94,7 +94,7 @@ class Schedules(Author):
         found = quantities.OF[kind].get(quantity) if isinstance(quantity, str) else None
         if found is None:
             call.fail(
-                f"quantity = {shown(quantity)}: {target.GetName()} is a {quantities.CALLED[kind]}, which has "
+                f"quantity = {shown(quantity)}: what = {target.GetName()} is a {quantities.CALLED[kind]}, which has "
                 f"{quantities.said(kind)}"
             )
         if (wrong := lacks(target, quantity)) is not None:

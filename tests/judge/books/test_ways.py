@@ -12,6 +12,7 @@ from wsim.judge.books.mobility import mobilities
 from wsim.judge.books.ways import Course, eased, off_the_way
 from wsim.judge.checks.forces import CheckForces
 from wsim.judge.evidence.evidence import Evidence
+from wsim.judge.evidence.scheduled import Aims
 from wsim.recording import read
 from wsim.scene import Drive, Scene
 from wsim.scene.world import Motor
@@ -62,9 +63,11 @@ def test_a_drive_at_its_most_is_known_where_its_joint_goes_evenly():
     """A joint that goes evenly, and one that turned back for a tenth of an interval, by as much as it takes."""
     drive, h = Motor(damping=100.0, velocity=2.0, max_effort=50.0), np.full(9, 0.02)
     place, rate = 0.02 * np.arange(10.0), np.ones(10)
-    assert np.all(eased(drive, place, rate, h) < 1e-12)
+    still, asked = np.zeros(10), np.full(10, drive.velocity)
+    aims = Aims(still, asked, still[1:], asked[1:], still[1:], np.zeros(9, dtype=bool), set=False)
+    assert np.all(eased(drive, aims, place, rate, h) < 1e-12)
     place[5:] += 0.5 * 0.1 * 0.02  # 0.5 m/s faster for a tenth of it, at which it is asked for its most and no more
-    assert eased(drive, place, rate, h)[4] == pytest.approx(0.2)
+    assert eased(drive, aims, place, rate, h)[4] == pytest.approx(0.2)
 
 
 # ---- worlds

@@ -89,7 +89,7 @@ def test_a_signal_that_was_not_recorded_is_not_satisfied(stack):
 def test_a_plan_keeps_its_formula_in_json(stack):
     plan = stack().plan
     objective = Objective(kind="formula", object="box_3", formula=parse("always[0, 2](upright(box_3, 10 deg))"))
-    whole = Plan.model_validate({**plan.model_dump(), "objectives": [objective.model_dump()]})
+    whole = Plan.model_validate({**plan.model_dump(), "objectives": [objective.model_dump()], "clauses": []})
     assert Plan.model_validate_json(whole.model_dump_json()).objectives == [objective]
     lamp = {"kind": "formula", "object": "box_3", "formula": {"op": "touches", "object": "box_3", "ref": "lamp"}}
     with pytest.raises(ValidationError, match=r"objectives\.0\.formula: no object 'lamp'; the plan has"):

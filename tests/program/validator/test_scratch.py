@@ -26,7 +26,9 @@ def test_of_each_call_it_is_known_what_it_needs():
     missing = sorted({*CALLS} - {*_NEEDS} - {"mesh", "save"})
     assert not missing, f"say in _NEEDS of program/validator/scratch.py what a good call of {missing} has"
     made = {name for name, takes in CALLS.items() if "name" in takes and not name.startswith("joint_")}
-    missing = sorted(made - {*OBJECTS, *CORDS, *SENSORS, "gear", "policy", "camera", "light", "material", "param"})
+    missing = sorted(
+        made - {*OBJECTS, *CORDS, *SENSORS, "gear", "policy", "schedule", "camera", "light", "material", "param"}
+    )
     assert not missing, f"name {missing} in OBJECTS of program/validator/scratch.py, or beside them in its `call`"
 
 

@@ -131,6 +131,7 @@ class World:
             *SENSORS,
             "gear",
             "policy",
+            "schedule",
             "camera",
             "light",
             "material",
