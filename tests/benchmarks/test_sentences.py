@@ -37,7 +37,7 @@ def test_most_are_planned_and_what_is_not_says_why_in_three_lines() -> None:
     refused = {text: said for text, said in why.items() if said}
     assert not any(said.startswith("CRASH") for said in refused.values()), refused
     assert all(len(said) < 600 and said.count("\n") < 3 for said in refused.values()), refused
-    assert len(refused) <= 8, refused
+    assert len(refused) <= 2, refused  # one is
 
 
 @pytest.mark.parametrize(("hits", "of", "said"), [(97, 100, "97 of 100 = 97.0 % (92 to 99)"), (0, 0, "none")])
