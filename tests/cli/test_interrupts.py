@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -44,3 +45,21 @@ def test_while_an_object_is_deleted_or_what_that_raised_is_reported(deleted: str
     command = [sys.executable, "-c", PROGRAM.format(deleted=deleted)]
     ended = subprocess.run(command, capture_output=True, text=True, timeout=STUCK, check=False)
     assert (ended.returncode, ended.stdout, ended.stderr) == (0, said, "")
+
+
+CAUGHT = """
+import sys
+from wsim.cli.interrupts import ignore_interrupts
+
+try:
+    exec("raise KeyboardInterrupt")
+except KeyboardInterrupt:
+    ignore_interrupts()
+sys.exit(130)
+"""
+
+
+def test_the_exit_code_is_kept_wherever_it_came(tmp_path: Path) -> None:
+    (tmp_path / "caught.py").write_text(CAUGHT)
+    command = [sys.executable, "-m", "caught"]
+    assert subprocess.run(command, cwd=tmp_path, timeout=STUCK, check=False).returncode == 130

@@ -38,6 +38,11 @@ def keep_interrupts() -> None:
 
 
 def ignore_interrupts() -> None:
-    """Nothing is left to stop but Python's own end."""
+    """Nothing is left to stop but Python's own end, which is to keep the exit code.
+
+    A Ctrl-C that comes within an `exec` of text, as dataclasses are made by, leaves a mark in the interpreter, though
+    it was caught long ago: started by `-m`, Python would end itself by that signal. The next `exec` of text clears it.
+    """
+    exec("")
     for number in (signal.SIGINT, signal.SIGALRM):
         signal.signal(number, signal.SIG_IGN)
