@@ -20,7 +20,7 @@ from wsim.defaults import DURATION
 from wsim.scene.articulation import joint_ends, joints_of, may_break
 from wsim.scene.check_leads import SHORTEST_PARTING, Hold, Way, is_lead, led, pieces, points_of, tops
 from wsim.scene.spanning import WORLD_END
-from wsim.scene.usd_prims import value_of
+from wsim.scene.usd_values import value_of
 
 Array = np.ndarray
 LOOKS = 64  # within a run
