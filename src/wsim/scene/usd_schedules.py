@@ -12,7 +12,7 @@ from wsim.limits import MAX_DURATION, MAX_KEYS, MAX_POSITION
 from wsim.quantities import What
 from wsim.scene import schema
 from wsim.scene.articulation import is_kinematic, may_break
-from wsim.scene.usd_values import targets_of, value_of
+from wsim.scene.usd_values import duration_of, targets_of, value_of
 
 OF_EVENTS = {"touch": "touch", "body": "place", "joint": "joint", "start": "start", "end": "end"}
 
@@ -69,7 +69,7 @@ def schedule_problems(prims: Iterable[Usd.Prim]) -> Iterator[str]:
     for prim in prims:
         if not schema.has(prim, schema.SCHEDULE):
             continue
-        problems = [*_keys(prim, seen), *_of_event(prim, before)]
+        problems = [*_keys(prim, seen), *_of_event(prim, before)] or [*_beyond_the_end(prim)]
         yield from (f"{prim.GetPath()}.wsim:{problem}" for problem in problems)
         before.append(prim)
 
@@ -101,6 +101,23 @@ def _keys(prim: Usd.Prim, seen: dict[tuple[str, str], Usd.Prim]) -> Iterator[str
         yield f"values: each must be from {found.low:g} to {found.most:g}"
     if quantity != "force" and value_of(prim, "point", None) is not None:
         yield f"point: it is where a force acts; this is a {quantity}"
+
+
+def _beyond_the_end(prim: Usd.Prim) -> Iterator[str]:
+    """Of a sound schedule: keys of which no run comes to know."""
+    end, clock, last = duration_of(prim.GetStage()), _earliest(prim), value_of(prim, "times", ())[-1]
+    at = "times" if not str(value_of(prim, "event", "")) else "eventDelay" if clock > end else "times"
+    if (wrong := quantities.beyond_the_end(clock, last, end)) is not None:
+        yield f"{at}: {wrong}"
+
+
+def _earliest(prim: Usd.Prim) -> float:
+    """The first moment at which a schedule's clock may begin [s]."""
+    kind, ends = str(value_of(prim, "event", "")), targets_of(prim, "eventOf")
+    came = 0.0
+    if kind in ("start", "end"):
+        came = _earliest(ends[0]) + value_of(ends[0], "times", ())[0 if kind == "start" else -1]
+    return float(came + value_of(prim, "eventDelay", 0.0)) if kind else 0.0
 
 
 def _of_event(prim: Usd.Prim, before: list[Usd.Prim]) -> Iterator[str]:

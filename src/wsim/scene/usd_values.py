@@ -1,13 +1,15 @@
 """What a prim of a stage says of wsim's own: attributes, relationships, and the line of the program that made it.
 
-It imports nothing but pxr: what checks a stage as a program writes it needs no models of worlds.
+It imports little but pxr: what checks a stage as a program writes it needs no models of worlds.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
-from pxr import Usd
+from pxr import Usd, UsdPhysics
+
+from wsim.defaults import DURATION
 
 
 def value_of(prim: Usd.Prim, name: str, default: object) -> Any:
@@ -28,3 +30,9 @@ def line_of(prim: Usd.Prim) -> str | None:
     """The line of the program that made a prim."""
     line = prim.GetCustomDataByKey("wsim:line")
     return line if isinstance(line, str) else None
+
+
+def duration_of(stage: Usd.Stage) -> float:
+    """How long the run of a stage is [s]."""
+    scenes = (prim for prim in stage.Traverse() if prim.IsA(UsdPhysics.Scene))
+    return next((float(value_of(prim, "duration", DURATION)) for prim in scenes), DURATION)

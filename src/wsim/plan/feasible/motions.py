@@ -7,6 +7,7 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from wsim.plan.feasible.asked import Said, said
+from wsim.plan.schema.schedule_problems import earliest
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Joint, Plan, PlanObject, SchedulePlan
@@ -94,16 +95,7 @@ def _begins(plan: Plan, each: SchedulePlan) -> float:
         return inf
     first = acts.index(True)
     key = each.times[max(first - 1, 0) if each.linear else first]
-    return _clock(plan, each) + key
-
-
-def _clock(plan: Plan, each: SchedulePlan) -> float:
-    """The earliest time at which a schedule's clock begins [s]."""
-    if each.after is None:
-        return 0.0
-    before = next((one for one in plan.schedules if one.name == (each.after.start or each.after.end)), None)
-    came = 0.0 if before is None else _clock(plan, before) + before.times[0 if each.after.start else -1]
-    return came + (each.after.delay or 0.0)
+    return earliest(plan, each) + key
 
 
 def _is_held(joint: Joint, items: dict[str, PlanObject]) -> bool:

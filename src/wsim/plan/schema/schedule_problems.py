@@ -32,10 +32,27 @@ def schedule_problems(plan: Draft) -> Iterator[str]:
         if key in seen:
             yield f"{where}: schedules.{seen[key]} is of the same {each.quantity}; put all keys into one"
         seen.setdefault(key, i)
-        if each.after is None and each.times[-1] > plan.simulation.duration:
-            yield f"{where}.times: {each.times[-1]:g} s is after the end, at {plan.simulation.duration:g} s"
-        if each.after is not None:
-            yield from (f"{where}.after.{problem}" for problem in _event(plan, i, each.after))
+        wrong = [] if each.after is None else [f"after.{problem}" for problem in _event(plan, i, each.after)]
+        yield from (f"{where}.{problem}" for problem in wrong or _beyond_the_end(plan, each))
+
+
+def _beyond_the_end(plan: Draft, each: SchedulePlan) -> Iterator[str]:
+    clock, end = earliest(plan, each), plan.simulation.duration
+    if (said := quantities.beyond_the_end(clock, each.times[-1], end)) is not None:
+        yield f"{'after.delay' if clock > end else 'times'}: {said}"
+
+
+def earliest(plan: Draft, each: SchedulePlan) -> float:
+    """The first moment at which a schedule's clock may begin [s]."""
+    if each.after is None:
+        return 0.0
+    names = [one.name for one in plan.schedules]
+    before = each.after.start or each.after.end
+    came = 0.0
+    if before in names[: names.index(each.name)]:
+        other = plan.schedules[names.index(before)]
+        came = earliest(plan, other) + other.times[0 if each.after.start else -1]
+    return came + (each.after.delay or 0.0)
 
 
 def _quantity(plan: Draft, where: str, each: SchedulePlan) -> tuple[Quantity, Joint | None] | str:
