@@ -156,6 +156,18 @@ def test_what_no_run_comes_to_is_said(tmp_path, times, after, says):
     assert check_stage(scene.save(tmp_path / "longer.usda"), []) == []
 
 
+def test_the_joints_of_robots_are_listed():
+    scene = Scene()
+    scene.robot("arm", "desk_arm")
+    for what, says in (
+        ("shoulder", "is not in the scene; known: arm, arm/joints/pan"),
+        ("arm", "of its own; name one"),
+    ):
+        with pytest.raises(SceneError, match=says) as error:
+            scene.schedule("s", what, "velocity", times=[0], values=[1])
+        assert "arm/joints/right_finger" in str(error.value)
+
+
 def test_a_loop_has_no_efforts_on_the_joint_that_closes_it(tmp_path):
     scene = Scene()
     for k, (x, z) in enumerate(((0, 0.5), (0.5, 1), (1, 0.5))):

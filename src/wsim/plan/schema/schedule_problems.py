@@ -67,8 +67,14 @@ def _quantity(plan: Draft, where: str, each: SchedulePlan) -> tuple[Quantity, Jo
             )
     elif each.of not in joints and each.of not in items:
         known = ", ".join([*joints, *(item.name for item in plan.objects)][:12])
-        return f"{where}.of: no joint and no object {each.of!r}; the plan has {known}"
+        robots = "; a robot's own joints go by its actuation" if any(_is_robot(item) for item in plan.objects) else ""
+        return f"{where}.of: no joint and no object {each.of!r}; the plan has {known}{robots}"
     kind = _kind(each.of, joints, items)
+    if kind is None and _is_robot(items[str(each.of)]):
+        return (
+            f"{where}.of: {each.of} is a robot, whose joints go by its registration.actuation: "
+            '{"kind": "schedule", "joint": ..., "times": [s], "target": [deg or m]}'
+        )
     if kind is None:
         return f"{where}.of: {each.of} is a {items[str(each.of)].primitive}, of which no schedule is; name a solid"
     found = quantities.OF[kind].get(each.quantity)
@@ -79,6 +85,10 @@ def _quantity(plan: Draft, where: str, each: SchedulePlan) -> tuple[Quantity, Jo
             f"{each.quantity!r}"
         )
     return found, joints.get(str(each.of))
+
+
+def _is_robot(item: PlanObject) -> bool:
+    return item.primitive == "robot"
 
 
 def _kind(of: str | Pair, joints: dict[str, Joint], items: dict[str, PlanObject]) -> What | None:
