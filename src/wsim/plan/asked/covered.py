@@ -13,7 +13,7 @@ from wsim.plan.asked.parties import strangers
 from wsim.plan.asked.shown import is_blow_shown, shows_not
 from wsim.plan.asked.stated import asks, asks_by_then, ends_by, states
 from wsim.plan.asked.tokens import tokens
-from wsim.plan.asked.vocabulary import CAUSES
+from wsim.plan.asked.vocabulary import CAUSES, SCHEDULED, SPRINGY
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Clause, Objective, Plan
@@ -147,7 +147,8 @@ def _gap(demand: Demand, clauses: Sequence[Clause], plan: Plan) -> Gap | None:
     """What is missing of a demand, given the clauses whose words hold it."""
     tied = [clause for clause in clauses if clause.by]
     reasons = [clause.unchecked for clause in clauses if clause.unchecked]
-    if demand.kind == "beyond" and not demand.denied:  # whatever it is tied to shows something else
+    springs = demand.base in SPRINGY and tied and _has_spring(plan)
+    if demand.kind == "beyond" and not demand.denied and not springs:  # whatever it is tied to shows something else
         if plan.stands_in_for is not None or reasons:
             return Gap(demand, next(iter(reasons), "the world stands in for it"), said=True)
         return Gap(demand, f"wsim has rigid bodies and water, and nothing in it can {demand.base}")
@@ -203,7 +204,15 @@ def _shows(clause: Clause, demand: Demand, plan: Plan) -> bool:
         return bool(asked)
     if asked or demand.kind == "state":
         return True
+    scheduled = {each.name for each in plan.schedules}
+    if demand.base in SCHEDULED and any(name in scheduled for name, _ in clause.things):
+        return True
     return demand.base in CAUSES and any(field in STARTS for _, field in clause.things)
+
+
+def _has_spring(plan: Plan) -> bool:
+    stiff = any(joint.drive is not None and joint.drive.stiffness > 0.0 for joint in plan.joints)
+    return stiff or any(cord.kind == "spring" for cord in plan.cords)
 
 
 def _counted(clause: Clause, demand: Demand) -> bool:
@@ -224,5 +233,5 @@ def _lacks(demand: Demand) -> str:
     if demand.kind == "number" and not demand.unit:
         return "fewer things are named for it"
     if demand.kind == "number":
-        return "no objective that is named for it has this value, nor a property, such as puck.velocity"
+        return "no objective that is named for it has this value, nor a property, such as puck.velocity, nor a schedule"
     return NOT_SHOWN if demand.denied else "it happens, and no objective is named for it"

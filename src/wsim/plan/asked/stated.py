@@ -13,6 +13,7 @@ from wsim.plan.schema.formula import Always, Mean, Predicate
 if TYPE_CHECKING:
     from wsim.plan.asked.demands import Demand
     from wsim.plan.schema import Joint, Objective, Plan, PlanObject
+    from wsim.plan.schema.schedules import SchedulePlan
 
 ROUNDING = 0.05  # share: "about half a metre" is planned as 0.48 m
 FIELDS = {  # by unit: where a number of it may stand in an object or a joint that is named without a property
@@ -28,6 +29,8 @@ def states(plan: Plan, name: str, field: str, demand: Demand) -> bool:
     """Whether a property has a number; without one, any that may. Places are differences, and are not compared."""
     if field in OPEN:
         return True
+    if name in {each.name for each in plan.schedules}:
+        field = field or ("times" if demand.unit == "s" else "values")
     fields = (field,) if field else FIELDS.get(demand.unit, ())
     return any(close(value, demand) for each in fields for value in values(plan, name, each))
 
@@ -101,6 +104,9 @@ def values(plan: Plan, name: str, field: str) -> Iterator[float]:
     for cord in plan.cords:
         if cord.name == name and field in OF_CORDS:
             yield from (value for value in (getattr(cord, field),) if value is not None)
+    for schedule in plan.schedules:
+        if schedule.name == name:
+            yield from _of_schedule(schedule, field)
 
 
 def _of_object(plan: Plan, item: PlanObject, field: str) -> Iterator[float]:
@@ -150,3 +156,16 @@ def _of_joint(joint: Joint, field: str) -> Iterator[float]:
         yield from joint.limits or ()
     elif field == "drive" and joint.drive is not None:
         yield from (joint.drive.velocity, joint.drive.position, joint.drive.max_force or 0.0)
+
+
+def _of_schedule(schedule: SchedulePlan, field: str) -> Iterator[float]:
+    """Its keys' values, or their times, how long it is from one to another, and its delay [s]."""
+    if field == "times":
+        times = schedule.times
+        yield from (abs(one - other) for one in times for other in (0.0, *times))
+        if schedule.after is not None:
+            yield schedule.after.delay or 0.0
+    elif field == "values":
+        for value in schedule.values:
+            vector = value if isinstance(value, tuple) else (value,)
+            yield from (*vector, math.hypot(*vector))

@@ -55,6 +55,10 @@ BEYOND = _set(
     vaporize warp wilt wrinkle
     """
 )
+# But springs do these, and joints with a drive that is stiff.
+SPRINGY = _set("compress shrink squash squeeze stretch")
+# What a schedule does: "opens after a second", "is lifted at 0.5 m/s". That a thing stops is seen, not set.
+SCHEDULED = CAUSES | _set("accelerate apply close lift lower open raise shut speed twist wait")
 IRREGULAR = {
     "ran": "run", "fell": "fall", "fallen": "fall", "slid": "slide", "swung": "swing", "spun": "spin",
     "struck": "strike", "threw": "throw", "thrown": "throw", "shot": "shoot", "flew": "fly", "flown": "fly",
