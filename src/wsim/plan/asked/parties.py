@@ -58,17 +58,27 @@ def strangers(plan: Plan, demand: Demand, objectives: Sequence[Objective]) -> st
     found = _parties(Words.of(plan.prompt), plan, demand)
     if found.bears is None:
         return ""
+    bears = _whole(plan, found.bears)
     asked = [(_involved(each, plan), shows(each, _MEETINGS)) for each in objectives]
     known = [(names, meets) for names, meets in asked if names is not None]
     if len(known) < len(asked):
         return ""
     for doer in found.does or (None,):
         alike = doer == found.bears and len(found.bears) == 1  # "a ball hits a ball": which is which is not told
-        if not alike and not any(_is_about(names, meets, doer, found.bears) for names, meets in known):
+        whole = doer and _whole(plan, doer)
+        if not alike and not any(_is_about(names, meets, whole, bears) for names, meets in known):
             who = f"{_said(doer)} and {_said(found.bears)}" if doer else _said(found.bears)
             about = "; ".join(" and ".join(sorted(names)) for names, _ in known)
             return f"it is said of {who}, and the objectives that are named for it are about {about}"
     return ""
+
+
+def _whole(plan: Plan, names: Names) -> Names:
+    """Things with all that is tied to them: what hits a lever's paddle hits the lever, and a scale is its pan."""
+    ties = [{joint.child, joint.parent} for joint in plan.joints] + [{cord.a, cord.b} for cord in plan.cords]
+    while more := {name for tie in ties if names & tie for name in tie if name is not None} - names:
+        names |= more
+    return names
 
 
 def _said(names: Names) -> str:
