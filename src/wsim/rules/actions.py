@@ -192,6 +192,9 @@ def _tilt(reader: Reader, thing: Thing, action: Action) -> None:
 
 def _go(reader: Reader, thing: Thing, action: Action) -> None:
     """Up or down, of a seesaw's end or of what is on it; off or down, of what rolls or slides."""
+    if thing.noun.family == "vehicle" and action.verb == "go" and action.particle is None:
+        wheels.drive(reader, thing, action)
+        return
     seesaw = thing if thing.noun.family == "seesaw" else thing.support
     down_it = any(place.preposition in ("down", "off", "into", "along", "across") for place in action.places)
     if thing.noun.family == "solid" and (down_it or (action.particle == "down" and thing.path is not None)):
@@ -324,7 +327,7 @@ def _be(_reader: Reader, thing: Thing, action: Action) -> None:
     """What a clause of its own says of a thing: "the ramp is at 20 degrees", "the table is 0.8 m high"."""
     described, phrase = action.target, thing.phrase
     assert described is not None
-    for name in ("material", "color", "length", "angle"):
+    for name in ("material", "color", "length", "angle", "scale", "weight", "shape"):
         value = getattr(described, name)
         if value is None:
             continue
@@ -365,5 +368,5 @@ _RULES: dict[str, Callable[[Reader, Thing, Action], None]] = {
     "carry": _carry, "move": _move, "ride": _ride, "run": _run, "patrol": _patrol, "return": _return,
     "drive": wheels.drive, "cross": wheels.cross, "leave": wheels.leave, "reach": wheels.leave,
     "stop": _stop, "climb": _come_again, "die": _come_again,
-    "stack": _stack, "face": _face, "rest": _rest, "start": _rest, "hold": _refused, "pour": _refused,
+    "stack": _stack, "face": _face, "rest": _rest, "start": _rest, "hold": _refused, "pour": _refused, "fill": _refused,
 }  # fmt: skip

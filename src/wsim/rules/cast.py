@@ -49,6 +49,9 @@ class Thing:
     manners: set[str] = field(default_factory=set)  # "upright", "head_on", "from_rest", "still", ...
     of: int = 1  # how many the prompt spoke of, before one was chosen
     speed: float | None = None  # [m/s]
+    delay: float | None = None  # [s] after which it is let go, or pushed
+    force: float | None = None  # that pushes it [N]
+    pushed_for: float | None = None  # [s]
     way: float | None = None  # that it drives [m]
     angle: float | None = None  # [deg] of a throw, or of a pendulum at the start
     direction: str | None = None

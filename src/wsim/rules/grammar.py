@@ -82,12 +82,22 @@ class _Clauses(Transformer):
     def story(self, _meta: Any, children: list[Any]) -> list[Clause]:
         """The clauses; those after "a tank in which" say where their things are, up to the next full stop."""
         clauses: list[Clause] = []
-        within: Place | None = None
+        within, later = None, None
         for before, child in pairwise([None, *children]):
-            if isinstance(child, Place):
+            listed = clauses[-1] if clauses and before == "list" and isinstance(child, Clause) else None
+            if listed is not None and self._list(listed, child):
+                continue
+            if isinstance(child, Place) and child.preposition == "after":
+                later = child  # of the next clause alone
+            elif isinstance(child, Place):
                 within = child
             elif isinstance(child, Clause):
                 child.within, child.given = within, before == "with"
+                if later is not None and not child.actions:
+                    raise NotUnderstood([later.words], "needs to be told what happens")
+                for action in child.actions if later is not None else []:
+                    action.places.append(later)
+                later = None
                 clauses.append(child)
             elif isinstance(child, tuple):  # "a chair faces a table on which a vase stands"
                 clauses += child
@@ -96,7 +106,7 @@ class _Clauses(Transformer):
         return clauses
 
     def full(self, _meta: Any, children: list[Any]) -> Clause:
-        subjects = [child for child in children if isinstance(child, Phrase)]
+        subjects = _phrases(children)
         actions = [child for child in children if isinstance(child, Action)]
         for before, action in pairwise(children):  # "hits a tower, which topples"
             if isinstance(action, Action) and action is not actions[0] and _is(before, "REL"):
@@ -104,6 +114,61 @@ class _Clauses(Transformer):
         return Clause(subjects, actions)
 
     bare = full
+
+    def _list(self, clause: Clause, named: Clause) -> bool:
+        """Put in the place of "five things" what they are, after a colon; whether the clause names such."""
+        at = next((i for i, phrase in enumerate(clause.subjects) if phrase.kind == "things"), None)
+        if at is None or named.actions:
+            return False
+        things = clause.subjects[at]
+        count = sum(phrase.count or 1 for phrase in named.subjects)
+        if things.count not in (None, count):
+            raise NotUnderstood([things.words], f"is told of {count} things after the colon, not of")
+        named.subjects[-1].places += things.places
+        clause.subjects[at : at + 1] = named.subjects
+        return True
+
+    def command(self, meta: Any, children: list[Any]) -> Clause:
+        """ "Drop a ball into a tank": what it does, or has done to it, by what comes after "with"."""
+        lead = next(i for i, child in enumerate(children) if _is(child, "COMMAND"))
+        by = next((i for i, child in enumerate(children) if _is(child, "WITH")), len(children))
+        action = Action(_meaning(children[lead]), self._words(meta))
+        things = _phrases(children[lead + 1 : by])
+        places = [child for child in children[lead + 1 : by] if isinstance(child, Place)]
+        for place in self._given_on(things[-1:], places):
+            self._place(action, place)
+        if (action.particle or "") not in (*self.tokens.known.particles[action.verb], ""):
+            raise self.tokens.fail(children[lead].start_pos)
+        if action.verb == "fill" and not all(thing.filled for thing in things):
+            raise self.tokens.fail(children[lead].start_pos)
+        action.places += [Place("by", child, words=child.words) for child in children[by:] if isinstance(child, Phrase)]
+        action.places += [child for child in children[by:] if isinstance(child, Place)]
+        return Clause(things, [action])
+
+    def apposed(self, meta: Any, children: list[Any]) -> Clause:
+        """ "One red and the other blue"."""
+        tokens = [child for child in children[:-1] if isinstance(child, Token)]
+        which = next(token for token in tokens if _is(token, "COUNT", "OTHER", "NTH"))
+        chosen = self._choice({"COUNT": "some", "OTHER": "other", "NTH": "nth"}[which.type], meta, tokens)
+        if which.type == "NTH":
+            chosen.nth = _meaning(which)
+        return Clause([chosen], [self.is_(meta, children)])
+
+    def chained(self, _meta: Any, children: list[Any]) -> tuple[Clause, ...]:
+        """ "On a table stands a lamp, and beside it a mug"."""
+        first = next(child for child in children if isinstance(child, Clause))
+        leads = [child for child in children if isinstance(child, Place)]
+        subjects = [child for child in children if isinstance(child, Phrase)]
+        verb = first.actions[0].verb
+        then = [
+            Clause([subject], [Action(verb, f"{lead.words} {subject.words}", places=[lead])])
+            for lead, subject in zip(leads, subjects, strict=True)
+        ]
+        return first, *then
+
+    def fronted(self, _meta: Any, children: list[Any]) -> Place:
+        """ "In a tank of water, …"."""
+        return next(child for child in children if isinstance(child, Place))
 
     def embedded(self, meta: Any, children: list[Any]) -> tuple[Clause, Clause]:
         """What the first clause ends with is where the things of the second are."""
@@ -114,10 +179,12 @@ class _Clauses(Transformer):
         return outer, inner
 
     def inverted(self, meta: Any, children: list[Any]) -> Clause:
-        """ "On the table stands a bottle"."""
-        subjects = [child for child in children if isinstance(child, Phrase)]
-        verb = "rest" if _is(children[1], "BE") else _meaning(children[1])
-        return Clause(subjects, [Action(verb, self._words(meta), places=[children[0]])])
+        """ "On the table stands a bottle", "on it there is a bottle"."""
+        subjects = _phrases(children)
+        places = [child for child in children if isinstance(child, Place)]
+        said = next(child for child in children if _is(child, "VERB", "BE"))
+        verb = "rest" if _is(said, "BE") else _meaning(said)
+        return Clause(subjects, [Action(verb, self._words(meta), places=places)])
 
     def within(self, meta: Any, children: list[Any]) -> Place:
         phrase = next(child for child in children if isinstance(child, Phrase))
@@ -128,8 +195,9 @@ class _Clauses(Transformer):
         return children[0]
 
     def breaks(self, _meta: Any, children: list[Any]) -> str:
-        if [str(child) for child in children if _is(child, "BREAK")] == ["with"]:
-            return "with"
+        marks = [str(child) for child in children if _is(child, "BREAK", "WITH")]
+        if marks in (["with"], [":"]):
+            return "with" if marks == ["with"] else "list"
         return "stop" if any(_is(child, "BREAK") and str(child) in _STOPS for child in children) else "break"
 
     def sep(self, _meta: Any, children: list[Any]) -> str:
@@ -141,10 +209,15 @@ class _Clauses(Transformer):
     opening = joiners
 
     # ---- things
-    def subject(self, _meta: Any, children: list[Any]) -> Phrase:
-        phrase: Phrase = children[0]
+    def subject(self, _meta: Any, children: list[Any]) -> Phrase | list[Phrase]:
+        *_, phrase = all_of = _phrases(children[:1])
+        for aside in children[1:]:  # "a cube, 10 cm wide, …"
+            if _is(aside, "COLOR") or isinstance(aside, tuple):
+                self._modify(phrase, aside)
+            elif isinstance(aside, Action):
+                phrase.clauses.append(aside)
         phrase.places = self._given_on([phrase], [child for child in children[1:] if isinstance(child, Place)])
-        return phrase
+        return phrase if len(all_of) == 1 else all_of
 
     def _given_on(self, phrases: list[Phrase], places: list[Place]) -> list[Place]:
         """The places, less those that follow a relative clause: "on a belt that runs at 1 m/s" is of the belt."""
@@ -158,6 +231,16 @@ class _Clauses(Transformer):
             kept.append(place)
             of = place.phrase if place.phrase is not None and any(o.relative for o in place.phrase.clauses) else None
         return kept
+
+    def twins(self, meta: Any, children: list[Any]) -> list[Phrase]:
+        """ "A heavy and a light ball": two things of one noun."""
+        between = next(i for i, child in enumerate(children) if child is None)
+        last = next(i for i, child in enumerate(children) if _is(child, "NOUN"))
+        first = self.thing(meta, [*children[:between], children[last]])
+        second = self.thing(meta, children[between + 1 : last + 1])
+        for phrase, words in ((first, children[:between]), (second, children[between + 1 : last])):
+            phrase.words = " ".join(str(word) for word in (*words, children[last]) if isinstance(word, Token))
+        return [first, second]
 
     def det(self, _meta: Any, children: list[Any]) -> Token:
         return children[0]
@@ -208,7 +291,7 @@ class _Clauses(Transformer):
     def sized(self, meta: Any, children: list[Any]) -> Any:
         return self.size(meta, children) if _is(children[0], "LENGTH") else children[-1]
 
-    def said(self, _meta: Any, children: list[Any]) -> Any:
+    def told(self, _meta: Any, children: list[Any]) -> Any:
         return children[-1]
 
     def weighed(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
@@ -313,6 +396,17 @@ class _Clauses(Transformer):
         else:
             action.places.append(place)
 
+    def negated(self, meta: Any, children: list[Any]) -> Action:
+        """ "Does not slide": what it does in place of that."""
+        verb = next(child for child in children if _is(child, "VERB", "ING"))
+        instead = self.tokens.known.negated.get(_meaning(verb))
+        if instead is None:
+            raise self.tokens.fail(meta.start_pos)
+        action = Action("rest" if instead == "still" else instead, self._words(meta))
+        action.places = [child for child in children if isinstance(child, Place) and child.preposition != "bare"]
+        action.places += [Place("still", words=str(verb))] if instead == "still" else []
+        return action
+
     def stands(self, meta: Any, children: list[Any]) -> Action:
         places = self._given_on([], [child for child in children if isinstance(child, Place)])
         return Action("rest", self._words(meta), places=places)
@@ -349,6 +443,13 @@ class _Clauses(Transformer):
         kind = "spin" if children[1].type == "SPIN" else "speed"
         return Place(kind, value=_meaning(children[1]), words=self._words(meta))
 
+    def after(self, meta: Any, children: list[Any]) -> Place:
+        time = next(_meaning(child) for child in children if _is(child, "TIME"))
+        return Place("after", value=time, words=self._words(meta))
+
+    def at_force(self, meta: Any, children: list[Any]) -> Place:
+        return Place("force", value=_meaning(children[1]), words=self._words(meta))
+
     def at_angle(self, meta: Any, children: list[Any]) -> Place:
         return Place("angle", value=_meaning(children[1]), words=self._words(meta))
 
@@ -359,7 +460,7 @@ class _Clauses(Transformer):
         return Place("toward", direction=_meaning(children[0]), words=self._words(meta))
 
     def to_share(self, meta: Any, children: list[Any]) -> Place:
-        if _meaning(children[0]) != "to":
+        if _is(children[0], "PREP") and _meaning(children[0]) != "to":
             raise self.tokens.fail(children[0].start_pos)
         return Place("share", value=round(_meaning(children[1]), 6), words=self._words(meta))
 
@@ -389,8 +490,14 @@ class _Clauses(Transformer):
         return Place("bare", words=str(children[0]))
 
 
+def _phrases(children: list[Any]) -> list[Phrase]:
+    """The things among a rule's children, of which one may be two: "a red and a blue ball"."""
+    lists = [child if isinstance(child, list) else [child] for child in children]
+    return [child for each in lists for child in each if isinstance(child, Phrase)]
+
+
 _STOPS = (".", "!")
-_HEADS = ("NOUN", "FLUID", "GROUND", "PRONOUN")
+_HEADS = ("NOUN", "THINGS", "FLUID", "GROUND", "PRONOUN")
 _MEASURES = ("x", "y", "z", "radius", "diameter", "mass", "density")
 
 
@@ -398,6 +505,8 @@ def _phrase(head: Token) -> Phrase:
     meaning = _meaning(head)
     if isinstance(meaning, Named):
         return Phrase(meaning.noun, "", plural=meaning.plural, filled=meaning.filled)
+    if head.type == "THINGS":
+        return Phrase("things", "", plural=True)
     kind = {"FLUID": "water", "GROUND": "ground", "PRONOUN": "pronoun"}[head.type]
     return Phrase(kind, "", part=str(head) if kind == "pronoun" else None)
 

@@ -10,7 +10,7 @@ from wsim.rules.actions import MOVES, act, meet
 from wsim.rules.cast import Cast, Pour, Thing
 from wsim.rules.lexicon import lexicon
 from wsim.rules.phrases import Action, Clause, Phrase, Place
-from wsim.rules.places import CARRIED, common, do, stand, support
+from wsim.rules.places import CARRIED, common, do, put_inside, stand, support
 from wsim.rules.reader import EACH_OTHER, Reader
 from wsim.rules.tokens import NotUnderstood
 from wsim.rules.used import check_used
@@ -24,10 +24,20 @@ def understand(clauses: list[Clause]) -> Cast:
         UserError: the prompt contradicts itself.
     """
     reader = Reader()
-    for clause in clauses:
+    for clause in [each for one in clauses for each in _of_the_last(one)]:
         _clause(reader, clause)
     _settle(reader)
     return reader.cast
+
+
+def _of_the_last(clause: Clause) -> list[Clause]:
+    """ "A laptop on a desk and a chair stands behind it": that is said of the last alone, by what is named before."""
+    places = [place for action in clause.actions for place in action.places]
+    back = any(place.phrase is not None and place.phrase.part in ("it", "them") for place in places)
+    if len(clause.subjects) < 2 or not back:
+        return [clause]
+    named = replace(clause, subjects=clause.subjects[:-1], actions=[])
+    return [named, replace(clause, subjects=clause.subjects[-1:])]
 
 
 def _clause(reader: Reader, clause: Clause) -> None:
@@ -50,6 +60,9 @@ def _clause(reader: Reader, clause: Clause) -> None:
             _given(reader, found, phrase)
             continue
         if phrase.places:  # "a cork ball and an iron ball in a tank": both are in it
+            before = pending[: -len(found)] if found else []
+            if before and any(place.phrase is not None and place.phrase.part == "it" for place in phrase.places):
+                reader.last, pending = before[-1:], found  # "a table and a laptop on it"
             for thing in pending:
                 stand(reader, thing, phrase.places)
             pending = []
@@ -61,7 +74,7 @@ def _clause(reader: Reader, clause: Clause) -> None:
     whole = [phrase.owner for phrase in clause.subjects if phrase.kind == "choice" and phrase.owner is not None]
     named = [phrase for phrase in whole if phrase.kind in lexicon().nouns]
     if named:
-        reader.spoken = [reader.thing(phrase) for phrase in named]
+        reader.spoken = [one for phrase in named for one in reader.now(reader.thing(phrase))]
     if any(phrase.kind not in ("choice", "pronoun", "part") for phrase in clause.subjects):
         reader.spoken, reader.chosen = [*subjects], []
     for number, action in enumerate(clause.actions):
@@ -139,6 +152,9 @@ def _together(reader: Reader, subjects: list[Thing], action: Action) -> None:
     if agents and action.target is None and action.verb in PASSIVE:
         _by(reader, subjects, action, agents[0])
         return
+    if action.verb == "hold" and action.target is not None and action.target.kind != "water":
+        _hold(reader, subjects, action)
+        return
     back = any(place.phrase is not None and place.phrase.kind == "pronoun" for place in action.places)
     if back and action.verb in ("roll", "slide", "go") and any(thing.noun.family == "solid" for thing in subjects):
         subjects = [thing for thing in subjects if thing.noun.family == "solid"]  # "a ramp, and a ball rolls down it"
@@ -146,6 +162,8 @@ def _together(reader: Reader, subjects: list[Thing], action: Action) -> None:
         carrier = thing.support if thing.support is not None and thing.support.noun.family == "turntable" else None
         if action.verb == "run" and carrier is not None:
             thing = carrier
+        if action.verb == "carry" and action.target is None and thing.noun.family == "solid":
+            action = replace(action, verb="ride")  # "is carried to the end"
         if action.verb in ("move", "run") and thing.noun.family == "solid" and action.target is None:
             action = replace(action, verb="roll" if thing.round else "slide")
         act(reader, thing, action)
@@ -162,6 +180,16 @@ def _by(reader: Reader, subjects: list[Thing], action: Action, agent: Place) -> 
     for thing in reader.subjects(agent.phrase, []):
         places = [place for place in action.places if place is not agent]
         act(reader, thing, replace(action, target=target, places=places))
+
+
+def _hold(reader: Reader, subjects: list[Thing], action: Action) -> None:
+    """ "A bucket holds three stones": they are in it."""
+    if len(subjects) != 1 or subjects[0].noun.family != "vessel" or action.target is None or action.places:
+        words = " ".join([*(thing.words for thing in subjects), action.words])
+        raise NotUnderstood([words], "knows of a bowl or a bucket that holds things, but not this")
+    for thing in reader.subjects(action.target, []):
+        put_inside(reader, thing, subjects[0])
+        do(thing, "rest")
 
 
 def _within(reader: Reader, thing: Thing, place: Place) -> None:
@@ -203,7 +231,7 @@ def _say(reader: Reader, phrase: Phrase, subjects: list[Thing]) -> None:
             act(reader, one, said)
 
 
-PASSIVE = ("hit", "knock", "topple", "push", "touch")
+PASSIVE = ("hit", "knock", "topple", "push", "touch", "carry")
 FURNITURE = "furniture"  # of the catalogue's categories: what stands beside a table, not on it
 UPRIGHT = ("wall", "post")  # on which nothing is put
 _ACTS = ("solid", "belt", "turntable", "pendulum", "seesaw", "robot", "vehicle")
@@ -218,6 +246,8 @@ def _of_scenery(reader: Reader, clause: Clause, scenery: list[Phrase], subjects:
         return True
     if action.verb == "hold":
         held = action.target
+        if held is not None and held.kind != "water" and not scenery:
+            return False
         if subjects or held is None or held.kind != "water" or any(phrase.kind != "tank" for phrase in scenery):
             raise NotUnderstood([clause.words], "knows only of a tank that holds water, not of this")
         reader.scenery(held)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from wsim.assets import get
 from wsim.errors import UserError
 from wsim.rules.cast import Beside, Thing
 from wsim.rules.lexicon import lexicon
@@ -11,8 +12,9 @@ from wsim.rules.tokens import NOT_IN_THIS_ORDER, NotUnderstood
 
 SURFACES = {"friction": 2.0, "restitution": 1.0}  # what of a surface may be said, and its most
 MANNERS = ("head_on", "from_rest", "still", "together", "upright", "freely", "to_and_fro", "again", "level", "in_turn",
-           "beside", "on_side", "stacked")  # fmt: skip
+           "beside", "on_side", "stacked", "slowly", "quickly", "below")  # fmt: skip
 CARRIED = ("solid", "vessel")  # families of what may stand on something
+FURNITURE = "furniture"  # of the catalogue's categories
 ROOMY = ("table", "desk", "workbench")  # what has room under it
 SIDES = ("LEFT-OF", "RIGHT-OF", "FRONT-OF", "BACK-OF")
 
@@ -23,9 +25,10 @@ def stand(reader: Reader, thing: Thing, places: list[Place]) -> None:
         if common(reader, thing, place):
             continue
         at = place.phrase
+        across = place.words.startswith("across") and thing.noun.primitive == "box"  # "a plank lies across two bricks"
         if (
             place.length is not None
-            or place.preposition not in ("in", "inside", "on", "at", "into", "onto")
+            or place.preposition not in ("in", "inside", "on", "at", "into", "onto", *(("along",) if across else ()))
             or at is None
         ):
             raise NotUnderstood([f"{thing.words} {place.words}"], "knows these words, but cannot place them")
@@ -77,6 +80,8 @@ def common(reader: Reader, thing: Thing, place: Place) -> bool:
         _between(reader, thing, place)
     elif place.preposition == "time":
         reader.cast.duration = place.value
+    elif place.preposition == "after":
+        thing.delay = place.value
     elif place.preposition == "speed":
         thing.speed = place.value
     elif place.preposition == "spin":
@@ -157,6 +162,9 @@ def _beside(reader: Reader, thing: Thing, place: Place) -> None:
         return
     if other.count > 1 and not other.group:
         raise NotUnderstood([place.phrase.words], "cannot tell which of them this is")
+    on = other.support
+    if place.phrase.kind == "pronoun" and on is not None and on.noun.family == "furniture" and _furniture(thing):
+        other = on  # "a laptop on a desk and a chair stands behind it"
     if "water" in (thing.place, other.place) and place.side.key == "next_to":
         for one in (thing, other):
             put(one, "water")
@@ -171,6 +179,12 @@ def _beside(reader: Reader, thing: Thing, place: Place) -> None:
         put(thing, "ground")
         put(other, "ground")
         do(thing, "rest")
+
+
+def _furniture(thing: Thing) -> bool:
+    """Whether it is the catalogue's furniture, which stands beside a table, not on it."""
+    asset = get(thing.noun.asset) if thing.noun.asset is not None else None
+    return asset is not None and asset.category.startswith(FURNITURE)
 
 
 def _above(reader: Reader, thing: Thing, place: Place, other: str | Thing) -> None:

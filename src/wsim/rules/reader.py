@@ -25,6 +25,7 @@ class Reader:
         self.spoken: list[Thing] = []  # among which "the first" or "the other" chooses
         self.chosen: list[Thing] = []  # by the choices so far
         self.named: dict[int, Thing] = {}  # what a phrase was found to name, by identity
+        self.singles: dict[int, list[Thing]] = {}  # what a thing that was several has become, by identity
         self.kept: list[Phrase] = []  # made on the way: their identity must stay theirs
         self.tanks: list[Phrase] = []
         self.struck: Thing | None = None  # the stack that was hit last
@@ -230,11 +231,16 @@ class Reader:
             among = [thing for thing in self.cast.things if thing.kind == kind.kind]
         else:
             among = self.spoken
+        among = [now for one in among for now in self.now(one)]
         whole = phrase.choice == "all"
         found: list[Thing] = []
         for thing in among:
             found += [thing] if whole or thing.count == 1 or thing.group else self.split(thing)
         return found
+
+    def now(self, thing: Thing) -> list[Thing]:
+        """What a thing that was named is by now: itself, or the single things that it was split into."""
+        return self.singles.get(id(thing), [thing])
 
     def split(self, thing: Thing) -> list[Thing]:
         """Single things in place of one that is several."""
@@ -247,6 +253,7 @@ class Reader:
             singles.append(one)
         at = self.cast.things.index(thing)
         self.cast.things[at : at + 1] = singles
+        self.singles[id(thing)] = singles
         for known in (self.spoken, self.last):
             if thing in known:
                 known[:] = [new for old in known for new in (singles if old is thing else [old])]

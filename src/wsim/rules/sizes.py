@@ -23,7 +23,8 @@ def material_of(thing: Thing, cast: Cast) -> Material:
     word = thing.phrase.material
     if word is None:
         word = _by_weight(thing) or thing.noun.material or _default_material(thing)
-        cast.assume(thing.words, f"of {word}", "the prompt names no material", "material", word)
+        asked = (word,) in lexicon().entries  # what a prompt cannot name is no answer either
+        cast.assume(thing.words, f"of {word}", "the prompt names no material", *(("material", word) if asked else ()))
     elif word == "metal":
         cast.assume(thing.words, "of steel", "the prompt says metal, not which")
     material = material_named(word)

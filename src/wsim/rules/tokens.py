@@ -48,7 +48,7 @@ class Tokens:
     """The prompt's words, and the tokens that they make."""
 
     def __init__(self, prompt: str, known: Lexicon) -> None:
-        self.text = " ".join(re.sub(r"(?<=\w)-(?=\w)", " ", prompt.lower()).split())
+        self.text = " ".join(re.sub(r"(?<=\w)-(?=\w)", " ", _in_full(prompt.lower())).split())
         self.known = known
         self.spans = [match.span() for match in _WORD.finditer(self.text)]
         self.words = [self.text[a:b] for a, b in self.spans]
@@ -75,10 +75,12 @@ class Tokens:
                 token.type, token.meaning = "DIMENSION", token.meaning[0]  # "1 m long"
             if token.type == "SIDE" and tokens and tokens[-1].type == "LENGTH":
                 tokens[-1].type = "OFFSET"  # "20 cm behind": the distance, not a size
+            if token.type in ("BREAK", "JOIN") and tokens and str(tokens[-1]) in _BELOW:
+                tokens[-1].type, tokens[-1].meaning = "MANNER", "below"  # "falls into a bucket below."
             if token.type == "LENGTH" and (_drives(tokens) or _falls(tokens)):
                 token.type = "WAY"  # "drives 100 m": how far, not the size of what follows
             tokens.append(token)
-        return tokens
+        return _commanded(tokens, self.known)
 
     def fail(self, position: int) -> NotUnderstood:
         """The words from a position of the text on, not understood in this order."""
@@ -147,6 +149,50 @@ class Tokens:
         if kind != "LENGTH":
             return None
         return self._token("EDGES", tuple(float(here[i]) * factor for i in (0, 2, 4)), at, 6)
+
+
+_BELOW = ("below", "underneath", "beneath")
+_SHORT = (
+    (r"[\u2018\u2019]", "'"),
+    (r"\b(there|it|that|what|here)'s\b", r"\1 is"),
+    (r"\b(they|we|you)'re\b", r"\1 are"),
+    (r"\bi'd\b", "i would"),
+    (r"\blet's\b", "let"),
+    (r"\b(is|are|was|were|does|do|did)n't\b", r"\1 not"),
+)
+
+
+def _in_full(text: str) -> str:
+    """ "There's", "doesn't": in full."""
+    for short, full in _SHORT:
+        text = re.sub(short, full, text)
+    return text
+
+
+def _commanded(tokens: list[Token], known: Lexicon) -> list[Token]:
+    """The tokens, with what is commanded as such: a verb's own form where a clause starts, or where "someone" does it.
+
+    "And" goes on commanding only in a sentence that commands: "two balls roll and hit a box" does not.
+    """
+    commands, opens = False, True
+    for at, token in enumerate(tokens):
+        before = tokens[at - 1].type if at else "BREAK"
+        after = tokens[at + 1].type if at + 1 < len(tokens) else "BREAK"
+        words = tuple(str(token).split())
+        if before in ("BREAK", "WITH"):
+            commands, opens = commands and str(tokens[at - 1]) == "with", True
+        starts = before in ("BREAK", "SHOW") or (before in ("JOIN", "COMMA") and (commands or opens))
+        if before == "MOTOR" and token.type == "VERB" and token.meaning == "run":
+            tokens[at - 1].type, token.type = "SHOW", "COMMAND"
+        elif before == "ACTOR" and words in {**known.third, **known.commands}:
+            token.type, token.meaning = "COMMAND", {**known.third, **known.commands}[words]
+        elif starts and words in known.commands and after not in ("OF", "BREAK", "JOIN"):
+            token.type, token.meaning, commands = "COMMAND", known.commands[words], True
+        elif token.type in ("VERB", "ING", "BE", "COMMAND"):
+            opens = False
+    for token in tokens:
+        token.type = "SHOW" if token.type == "ACTOR" else token.type
+    return tokens
 
 
 def _named(value: Any) -> str:

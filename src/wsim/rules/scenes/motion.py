@@ -23,6 +23,7 @@ from wsim.rules.scenes.part import (
     tidy,
     times,
 )
+from wsim.rules.scenes.timed import push
 
 ROLL_SPEED, SLIDE_SPEED, PUSH_SPEED = 1.0, 2.0, 1.5  # [m/s]
 STOP_WAY = 1.5  # after which a ball that is to stop has stopped [m]
@@ -52,6 +53,9 @@ def move(thing: Thing, item: PlanObject, cast: Cast, part: Part, below: str | No
     carrier = next((o for o in part.objects if o.name == below), ground_object(cast.ground))
     friction = pair_friction(item, carrier, thing.said("friction", thing.support))
     direction = thing.direction or "front"
+    if thing.force is not None:
+        push(thing, item, friction, DIRECTIONS[direction], cast, part)
+        return item
     if thing.into is not None:
         return _into(thing, item, carrier, how, friction, direction, cast, part)
     speed = _speed(thing, item, carrier, how, friction, cast)
@@ -162,6 +166,7 @@ def _speed(thing: Thing, item: PlanObject, carrier: PlanObject, how: str, fricti
     if how in ("slide", "push") and thing.off and carrier.size:
         way = carrier.size[0] / 2 + item.size[0]  # so that its middle is over the edge with speed to spare
         speed = math.ceil(10 * 1.3 * math.sqrt(2 * friction * GRAVITY * way)) / 10
+    speed *= {"slowly": 0.5, "quickly": 2.0}.get(next(iter({"slowly", "quickly"} & thing.manners), ""), 1.0)
     cast.assume(thing.words, f"starts at {speed:g} m/s", "the prompt gives no speed")
     return speed
 
