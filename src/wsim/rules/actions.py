@@ -10,7 +10,7 @@ from wsim.rules.cast import CARRIERS, Beside, Thing
 from wsim.rules.goes import aim, go, movable, push, strike
 from wsim.rules.lexicon import lexicon
 from wsim.rules.phrases import Action, Place
-from wsim.rules.places import MANNERS, arrange, common, do, hang, part, put, stand, support, where
+from wsim.rules.places import MANNERS, UPRIGHT, arrange, common, do, hang, part, put, stand, support, where
 from wsim.rules.reader import EACH_OTHER, Reader
 from wsim.rules.tokens import NOT_IN_THIS_ORDER, NotUnderstood
 
@@ -83,6 +83,8 @@ def _throw(reader: Reader, thing: Thing, action: Action) -> None:
             thing.direction = place.direction
         elif common(reader, thing, place):
             continue
+        elif place.phrase is not None and place.preposition == "over":
+            _over(reader, thing, place)
         elif place.phrase is not None and place.preposition in (*_INTO, "onto", "in", "on"):
             at = where(reader, place.phrase, thing)
             if thing.target is not None and thing.target.support is None and place.preposition in ("on", "in"):
@@ -93,6 +95,18 @@ def _throw(reader: Reader, thing: Thing, action: Action) -> None:
                 aim(reader, thing, place.phrase, action)
         else:
             raise NotUnderstood([place.words], "cannot throw a thing there:")
+
+
+def _over(reader: Reader, thing: Thing, place: Place) -> None:
+    """Over a wall, which stands where the throw is highest."""
+    at = where(reader, place.phrase, thing) if place.phrase is not None else None
+    free = isinstance(at, Thing) and at.count == 1 and at.support is None and not at.beside
+    if not isinstance(at, Thing) or at.noun.key not in UPRIGHT or not free or thing.target is not None:
+        raise NotUnderstood([place.words], "throws things over a wall or a post that stands on the ground, not so:")
+    if at.phrase.length is not None:  # "over a wall of 1 m": its height
+        at.phrase.measures["z"], at.phrase.length = at.phrase.length, None
+    put(at, "ground")
+    thing.over = at
 
 
 # ---- on what moves

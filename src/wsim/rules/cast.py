@@ -42,6 +42,7 @@ class Thing:
     path: Thing | None = None  # the ramp that it is on
     off: bool = False  # leaves its support
     into: Thing | None = None  # what it comes down in or on, after it has left what it was on
+    over: Thing | None = None  # the wall or post that it is thrown over
     side: str | None = (
         None  # the end of its support: "left", "right", "one", "other", "middle"; of a seesaw: what goes down
     )

@@ -10,7 +10,7 @@ from wsim.rules.actions import MOVES, act, meet
 from wsim.rules.cast import Cast, Pour, Thing
 from wsim.rules.lexicon import lexicon
 from wsim.rules.phrases import Action, Clause, Phrase, Place
-from wsim.rules.places import CARRIED, common, do, put_inside, stand, support
+from wsim.rules.places import CARRIED, UPRIGHT, common, do, put_inside, stand, support
 from wsim.rules.reader import EACH_OTHER, Reader
 from wsim.rules.tokens import NotUnderstood
 from wsim.rules.used import check_used
@@ -60,7 +60,7 @@ def _clause(reader: Reader, clause: Clause) -> None:
             _given(reader, found, phrase)
             continue
         if phrase.places:  # "a cork ball and an iron ball in a tank": both are in it
-            before = pending[: -len(found)] if found else []
+            before = pending[: -len(found)] if found and not clause.given else []
             if before and any(place.phrase is not None and place.phrase.part == "it" for place in phrase.places):
                 reader.last, pending = before[-1:], found  # "a table and a laptop on it"
             for thing in pending:
@@ -233,7 +233,6 @@ def _say(reader: Reader, phrase: Phrase, subjects: list[Thing]) -> None:
 
 PASSIVE = ("hit", "knock", "topple", "push", "touch", "carry")
 FURNITURE = "furniture"  # of the catalogue's categories: what stands beside a table, not on it
-UPRIGHT = ("wall", "post")  # on which nothing is put
 _ACTS = ("solid", "belt", "turntable", "pendulum", "seesaw", "robot", "vehicle")
 
 

@@ -14,6 +14,9 @@ SURFACES = {"friction": 2.0, "restitution": 1.0}  # what of a surface may be sai
 MANNERS = ("head_on", "from_rest", "still", "together", "upright", "freely", "to_and_fro", "again", "level", "in_turn",
            "beside", "on_side", "stacked", "slowly", "quickly", "below")  # fmt: skip
 CARRIED = ("solid", "vessel")  # families of what may stand on something
+UPRIGHT = ("wall", "post")  # on which nothing is put, and over which things are thrown
+MOST_INSIDE = 9  # things in a vessel
+AT_RIM = 0.01  # above a vessel, of what comes to lie in it beside others [m]
 FURNITURE = "furniture"  # of the catalogue's categories
 ROOMY = ("table", "desk", "workbench")  # what has room under it
 SIDES = ("LEFT-OF", "RIGHT-OF", "FRONT-OF", "BACK-OF")
@@ -288,9 +291,16 @@ def put_inside(reader: Reader, thing: Thing, other: Thing) -> None:
     """Put a thing in a vessel."""
     if other.noun.family != "vessel" or thing.noun.family != "solid" or other.count > 1:
         raise NotUnderstood([f"{thing.words} in {other.words}"], "puts things in a bowl or a bucket, but not this:")
-    if thing.count > 1 or any(one is not thing and one.inside is other for one in reader.cast.things):
-        raise UserError(f"{other.words!r}: the builtin planner puts one thing in it, not more")
+    held = thing.count + sum(one.count for one in reader.cast.things if one.inside is other and one is not thing)
+    if thing.group or held > MOST_INSIDE:
+        raise UserError(f"{other.words!r}: the builtin planner puts up to {MOST_INSIDE} things in it, side by side")
     thing.inside = other
+    if held > 1:
+        for one in {*(one for one in reader.cast.things if one.inside is other), thing}:
+            if "drop" not in one.does:
+                do(one, "drop")
+                one.drop_height = AT_RIM if one.drop_height is None else one.drop_height
+                reader.cast.assume(one.words, "let go at the rim", "from there it settles among the others")
     put(thing, "ground")
     put(other, "ground")
 

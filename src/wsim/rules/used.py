@@ -55,6 +55,7 @@ def _bearing(thing: Thing) -> tuple[tuple[bool, str], ...]:
         (goes, "puts nothing on what moves, hangs, or is on a ramp, a belt, a turntable or a seesaw, such as"),
         (thing.off and below is None and thing.path is None, "needs to be told off what this goes"),
         (thing.off and table and "drop" in does, "lets things roll or slide off a table, but not drop on it and leave"),
+        (hangs and ("meet" in does or thing.meets is not None), "lets what hangs swing into a thing, but not this:"),
         (hangs and below is not None and not _hangs_above(thing), "hangs one thing, which hits nothing, above a table"),
     )
 

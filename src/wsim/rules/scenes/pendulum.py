@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from wsim.defaults import GRAVITY
 from wsim.errors import UserError
-from wsim.plan.schema import Joint, JointDrive, Objective, PlanObject, Pose
+from wsim.plan.schema import Cord, Joint, JointDrive, Objective, PlanObject, Pose, Vec3
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.materials import material_named
 from wsim.rules.scenes.lasting import swings_down, to_and_fro
@@ -67,8 +67,13 @@ def _hang(hanging: Hanging, cast: Cast, taken: set[str]) -> Part:
     clear = CLEARANCE if thing.drop_height is None else thing.drop_height
     height = round(length + hanging.half + clear, 3) if struck is None else tidy(struck.height + length)
     below = "the ground" if thing.support is None else thing.support.words
-    cast.assume(thing.words, f"hangs from a hinge {height:g} m above {below}", f"so that it clears {below}")
+    up = "point" if hanging.rope else "hinge"
+    cast.assume(thing.words, f"hangs from a {up} {height:g} m above {below}", f"so that it clears {below}")
     turn = math.radians(-angle if struck is not None else angle)
+    if hanging.rope and "die" not in thing.does:
+        body = _on_rope(hanging, turn, height, part, taken)
+        _ask(hanging, body, angle, struck, part, cast)
+        return part
     rod, body = _pose(hanging, turn, height, cast, taken)
     part.posed += [rod, body]
     damped = _damped(rod, body, length, cast, thing) if "die" in thing.does else None
@@ -82,6 +87,27 @@ def _hang(hanging: Hanging, cast: Cast, taken: set[str]) -> Part:
     ]  # fmt: skip
     _ask(hanging, body, angle, struck, part, cast)
     return part
+
+
+def _on_rope(hanging: Hanging, turn: float, height: float, part: Part, taken: set[str]) -> PlanObject:
+    """The body at the end of a rope, which pulls where it is taut and weighs nothing; from the top of the body."""
+    length, half = hanging.length, hanging.half
+    name = next(one for one in ("rope", f"{hanging.item.name}_rope") if one not in taken)
+    taken.add(name)
+
+    def at(distance: float) -> Vec3:
+        return tidy(distance * math.sin(turn)), 0.0, tidy(height - distance * math.cos(turn))
+
+    pose = Pose(position=at(length), rotation_deg=(0.0, tidy(-math.degrees(turn)), 0.0))
+    body = hanging.item.related([]).model_copy(update={"pose": pose})
+    part.posed.append(body)
+    part.cords.append(
+        Cord(
+            name=name, kind="rope", b=body.name, anchor_a=(0.0, 0.0, tidy(height)), anchor_b=at(length - half),
+            length=tidy(length - half), radius=ROPE_RADIUS,
+        )
+    )  # fmt: skip
+    return body
 
 
 def _angle(thing: Thing, cast: Cast) -> float:
@@ -165,8 +191,8 @@ def _hanging(thing: Thing, cast: Cast, taken: set[str]) -> list[Hanging]:
     usual = ROPE_LENGTH if rope else ROD_LENGTH
     if length is None:
         length = usual
-        end = "its lower end" if rope else "the bob's centre"
-        cast.assume(thing.words, f"{length:g} m from the hinge to {end}", "the prompt gives no length")
+        choice = f"on a rope of {length:g} m" if rope else f"{length:g} m from the hinge to the bob's centre"
+        cast.assume(thing.words, choice, "the prompt gives no length")
     if not 4 * SMALLEST <= length <= LARGEST:
         raise UserError(
             f"{thing.words!r}: {length:g} m is outside {4 * SMALLEST:g} to {LARGEST:g} m, a pendulum's range"
