@@ -171,12 +171,14 @@ def test_what_a_table_has_is_on_it(sentence, above, beside):
 )
 def test_what_hangs_above_a_table_is_above_it(sentence, length, clear):
     made = plan(sentence)
-    lamp, table, rope = (around(made.object(name)) for name in ("lamp", "table", "rope"))
+    lamp, table = (around(made.object(name)) for name in ("lamp", "table"))
     assert [sum(ends) / 2 for ends in zip(lamp.low[:2], lamp.high[:2], strict=True)] == pytest.approx(
         [sum(ends) / 2 for ends in zip(table.low[:2], table.high[:2], strict=True)], abs=1e-6
     )
     assert lamp.low[2] - table.high[2] == pytest.approx(clear, abs=1e-6)
-    assert rope.high[2] - rope.low[2] == pytest.approx(length, abs=1e-6)
+    (rope,) = made.cords
+    assert (rope.kind, rope.b) == ("rope", "lamp") and rope.length == pytest.approx(length, abs=1e-6)
+    assert rope.anchor_a[2] - lamp.high[2] == pytest.approx(length, abs=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -135,6 +135,8 @@ def _ride(reader: Reader, thing: Thing, action: Action) -> None:
         )
         if isinstance(at, Thing) and at.noun.family in CARRIERS:
             support(reader, thing, at)
+        elif thing.support is not None and place.phrase is not None and place.phrase.part == "end":
+            continue  # of what carries it
         elif not common(reader, thing, place):
             raise NotUnderstood([place.words], "lets things ride on a conveyor or a turntable, not there:")
     if thing.support is None:
@@ -268,7 +270,11 @@ def _return(_reader: Reader, thing: Thing, action: Action) -> None:
 # ---- how it goes on
 def _stop(reader: Reader, thing: Thing, action: Action) -> None:
     """Slide towards something, and stand still before it or against it; what drives comes to rest by its brakes."""
-    if "drive" in thing.does and not action.places:
+    if "drive" in thing.does and all(place.preposition == "way" for place in action.places):
+        for place in action.places:
+            if thing.way not in (None, place.length):
+                raise UserError(f"{action.words!r}: the prompt says before how far it drives")
+            thing.way = place.length
         do(thing, "stop")
         return
     movable(thing, action)

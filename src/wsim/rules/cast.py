@@ -115,6 +115,7 @@ class Cast:
     water: str | None = None
     pour: Pour | None = None
     ground: str | None = None  # the ground's material, if it is said
+    only: list[tuple[Thing, str]] = field(default_factory=list)  # what alone of all in the water does what
     office: str | None = None  # the prompt's words for one that is patrolled
     duration: float | None = None  # [s], if it was given
     assumptions: list[Assumption] = field(default_factory=list)

@@ -117,9 +117,14 @@ class _Clauses(Transformer):
 
     def _list(self, clause: Clause, named: Clause) -> bool:
         """Put in the place of "five things" what they are, after a colon; whether the clause names such."""
-        at = next((i for i, phrase in enumerate(clause.subjects) if phrase.kind == "things"), None)
+        ones = all(phrase.kind == "one" for phrase in named.subjects)  # "three crates: a small one, …"
+        at = next((i for i, p in enumerate(clause.subjects) if p.kind == "things" or (ones and p.plural)), None)
         if at is None or named.actions:
             return False
+        for phrase in named.subjects if ones else []:
+            phrase.kind = clause.subjects[at].kind
+            phrase.material = phrase.material or clause.subjects[at].material
+            phrase.color = phrase.color or clause.subjects[at].color
         things = clause.subjects[at]
         count = sum(phrase.count or 1 for phrase in named.subjects)
         if things.count not in (None, count):
@@ -160,6 +165,10 @@ class _Clauses(Transformer):
         leads = [child for child in children if isinstance(child, Place)]
         subjects = [child for child in children if isinstance(child, Phrase)]
         verb = first.actions[0].verb
+        to = first.actions[0].places[0]
+        for lead in leads:  # "to the left of a barrel there is a crate, and to the right of it a pillar"
+            if to.preposition == lead.preposition == "side" and lead.phrase is not None and lead.phrase.part == "it":
+                lead.phrase = to.phrase
         then = [
             Clause([subject], [Action(verb, f"{lead.words} {subject.words}", places=[lead])])
             for lead, subject in zip(leads, subjects, strict=True)
@@ -195,9 +204,9 @@ class _Clauses(Transformer):
         return children[0]
 
     def breaks(self, _meta: Any, children: list[Any]) -> str:
-        marks = [str(child) for child in children if _is(child, "BREAK", "WITH")]
-        if marks in (["with"], [":"]):
-            return "with" if marks == ["with"] else "list"
+        marks = [child for child in children if _is(child, "BREAK", "WITH")]
+        if len(marks) == 1 and (marks[0].type == "WITH" or str(marks[0]) == ":"):
+            return "with" if marks[0].type == "WITH" else "list"
         return "stop" if any(_is(child, "BREAK") and str(child) in _STOPS for child in children) else "break"
 
     def sep(self, _meta: Any, children: list[Any]) -> str:
@@ -210,7 +219,9 @@ class _Clauses(Transformer):
 
     # ---- things
     def subject(self, _meta: Any, children: list[Any]) -> Phrase | list[Phrase]:
-        *_, phrase = all_of = _phrases(children[:1])
+        *_, phrase = all_of = _phrases(children[:2])
+        for each in all_of:
+            each.only = _is(children[0], "ONLY")
         for aside in children[1:]:  # "a cube, 10 cm wide, …"
             if _is(aside, "COLOR") or isinstance(aside, tuple):
                 self._modify(phrase, aside)
@@ -364,6 +375,25 @@ class _Clauses(Transformer):
             raise self.tokens.fail(children[0].start_pos)
         return phrase
 
+    def compound(self, meta: Any, children: list[Any]) -> Phrase:
+        """ "A domino row"."""
+        members = _phrase(children[0])
+        members.words = str(children[0])
+        return Phrase("group", self._words(meta), arrangement=_meaning(children[1]), members=members)
+
+    def weight(self, meta: Any, children: list[Any]) -> Phrase:
+        """ "2 kg on one end"."""
+        return Phrase("weight", self._words(meta), measures={"mass": _meaning(children[0])})
+
+    def each_kind(self, meta: Any, children: list[Any]) -> Phrase:
+        """ "Both balls": those that were spoken of, else as many."""
+        phrase: Phrase = children[1]
+        if phrase.kind not in self.tokens.known.nouns or phrase.definite:
+            raise self.tokens.fail(children[0].start_pos)
+        if str(children[0]) == "both" and phrase.count is None:
+            phrase.count = 2
+        return Phrase("choice", self._words(meta), definite=True, choice="all", members=phrase)
+
     def part(self, meta: Any, children: list[Any]) -> Phrase:
         owner = next((child for child in children if isinstance(child, Phrase)), None)
         side = next((_meaning(child) for child in children if _is(child, "DIRECTION")), None)
@@ -465,7 +495,10 @@ class _Clauses(Transformer):
         return Place("share", value=round(_meaning(children[1]), 6), words=self._words(meta))
 
     def up_to(self, meta: Any, children: list[Any]) -> Place:
-        return Place("up to", length=_meaning(children[1]), words=self._words(meta))
+        length = next(_meaning(child) for child in children if _is(child, "LENGTH"))
+        if _is(children[-1], "DIMENSION") and _meaning(children[-1]) not in ("y", "z"):  # "deep" or "high"
+            raise self.tokens.fail(children[-1].start_pos)
+        return Place("up to", length=length, words=self._words(meta))
 
     def so_far(self, meta: Any, children: list[Any]) -> Place:
         return Place("way", length=_meaning(children[-1]), words=self._words(meta))
@@ -497,7 +530,7 @@ def _phrases(children: list[Any]) -> list[Phrase]:
 
 
 _STOPS = (".", "!")
-_HEADS = ("NOUN", "THINGS", "FLUID", "GROUND", "PRONOUN")
+_HEADS = ("NOUN", "THINGS", "ONE", "FLUID", "GROUND", "PRONOUN")
 _MEASURES = ("x", "y", "z", "radius", "diameter", "mass", "density")
 
 
@@ -505,8 +538,8 @@ def _phrase(head: Token) -> Phrase:
     meaning = _meaning(head)
     if isinstance(meaning, Named):
         return Phrase(meaning.noun, "", plural=meaning.plural, filled=meaning.filled)
-    if head.type == "THINGS":
-        return Phrase("things", "", plural=True)
+    if head.type in ("THINGS", "ONE"):
+        return Phrase("things" if head.type == "THINGS" else "one", "", plural=head.type == "THINGS")
     kind = {"FLUID": "water", "GROUND": "ground", "PRONOUN": "pronoun"}[head.type]
     return Phrase(kind, "", part=str(head) if kind == "pronoun" else None)
 

@@ -163,6 +163,7 @@ def _lexicon(_assets: tuple[str, int]) -> Lexicon:
     _nouns(made, nouns)
     made.stuff |= nouns["stuff"]
     _others(made)
+    _measures(made, _data("quantities"))
     _commands(made, _data("verbs"))  # last: what is a thing or does something, too, is that
     _robots(made)
     return made
@@ -265,7 +266,14 @@ def _verbs(made: Lexicon, data: dict[str, Any]) -> None:
             made.negated[verb] = fields["negated"]
 
 
+def _measures(made: Lexicon, data: dict[str, Any]) -> None:
+    """What a length may be said to be after it: "10 cm diameter"."""
+    for noun, what in data["measure"].items():
+        made.add(noun, "MEASURE", what)
+
+
 def _commands(made: Lexicon, data: dict[str, Any]) -> None:
+    """What may be commanded, and what someone does."""
     for verb, fields in data["verb"].items():
         for form in fields.get("commands", ()):
             made.commands[tuple(form.split())] = verb

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 from wsim.assets import get
 from wsim.errors import UserError
@@ -46,6 +47,7 @@ def _clause(reader: Reader, clause: Clause) -> None:
     subjects: list[Thing] = []
     scenery = []
     pending: list[Thing] = []
+    given: list[Thing] = []
     for phrase in clause.subjects:
         if reader.is_scenery(phrase):
             reader.scenery(phrase)
@@ -57,7 +59,8 @@ def _clause(reader: Reader, clause: Clause) -> None:
         subjects += found
         pending += found
         if clause.given and not clause.actions:
-            _given(reader, found, phrase)
+            _given(reader, [*given, *found] if _inside(phrase) else found, phrase)
+            given = [] if phrase.places else [*given, *found]
             continue
         if phrase.places:  # "a cork ball and an iron ball in a tank": both are in it
             before = pending[: -len(found)] if found and not clause.given else []
@@ -68,6 +71,8 @@ def _clause(reader: Reader, clause: Clause) -> None:
             pending = []
         for said in phrase.clauses:
             _together(reader, found, said)
+    if any(phrase.only for phrase in clause.subjects):
+        _only(reader, clause, subjects)
     if clause.within is not None:
         for thing in subjects:
             _within(reader, thing, clause.within)
@@ -75,7 +80,7 @@ def _clause(reader: Reader, clause: Clause) -> None:
     named = [phrase for phrase in whole if phrase.kind in lexicon().nouns]
     if named:
         reader.spoken = [one for phrase in named for one in reader.now(reader.thing(phrase))]
-    if any(phrase.kind not in ("choice", "pronoun", "part") for phrase in clause.subjects):
+    if any(p.members is not None or p.kind not in ("choice", "pronoun", "part") for p in clause.subjects):
         reader.spoken, reader.chosen = [*subjects], []
     for number, action in enumerate(clause.actions):
         last = _last(reader, clause.actions[number - 1]) if action.relative and number else None
@@ -92,6 +97,19 @@ def _clause(reader: Reader, clause: Clause) -> None:
                     _say(reader, each, subjects)
     if subjects:
         reader.last = [thing for thing in subjects if thing in reader.cast.things] or reader.last
+
+
+def _only(reader: Reader, clause: Clause, things: list[Thing]) -> None:
+    """ "Only the cork floats": all else in the water does not, which has to be so where the prompt says it."""
+    verbs = [action.verb for action in clause.actions]
+    if len(verbs) != 1 or verbs[0] not in ("float", "sink"):
+        raise NotUnderstood([clause.words], "knows of things of which only some float or sink, not of this")
+    reader.cast.only += [(thing, verbs[0]) for thing in things]
+
+
+def _inside(phrase: Phrase) -> bool:
+    """Whether it is said to be in something, as what is named with it then is: "with a ball and a brick in it"."""
+    return any(place.preposition in ("in", "inside") for place in phrase.places)
 
 
 def _given(reader: Reader, things: list[Thing], phrase: Phrase) -> None:
@@ -152,6 +170,8 @@ def _together(reader: Reader, subjects: list[Thing], action: Action) -> None:
     if agents and action.target is None and action.verb in PASSIVE:
         _by(reader, subjects, action, agents[0])
         return
+    if len(subjects) > 1 and all(thing.count == 1 for thing in subjects):
+        action = _arranged(reader, subjects, action)
     if action.verb == "hold" and action.target is not None and action.target.kind != "water":
         _hold(reader, subjects, action)
         return
@@ -180,6 +200,26 @@ def _by(reader: Reader, subjects: list[Thing], action: Action, agent: Place) -> 
     for thing in reader.subjects(agent.phrase, []):
         places = [place for place in action.places if place is not agent]
         act(reader, thing, replace(action, target=target, places=places))
+
+
+def _arranged(reader: Reader, things: list[Thing], action: Action) -> Action:
+    """Several that are named one by one, in a stack or a row: what is left to say of each."""
+    rows = [p for p in action.places if p.phrase is not None and p.phrase.kind == "group" and not p.phrase.members]
+    stacked = action.verb == "stack" or any(place.preposition == "stacked" for place in action.places)
+    arranged = {place.phrase.arrangement for place in rows if place.phrase is not None}
+    if stacked or arranged == {"stack"}:
+        reader.cast.assume(things[0].words, "at the bottom", "the prompt does not say which is on which")
+        for lower, upper in pairwise(things):
+            support(reader, upper, lower)
+            do(upper, "rest")
+        places = [place for place in action.places if place not in rows and place.preposition != "stacked"]
+        stand(reader, things[0], places)
+        do(things[0], "rest")
+        return replace(action, verb="rest", places=[])
+    if action.verb == "rest" and arranged == {"row"}:
+        reader.cast.assume(things[0].words, "in a row from right to left", "the prompt does not say along which line")
+        return replace(action, places=[place for place in action.places if place not in rows])
+    return action
 
 
 def _hold(reader: Reader, subjects: list[Thing], action: Action) -> None:
@@ -290,6 +330,7 @@ def _settle(reader: Reader) -> None:
     """Give each thing whose place is open the one that the rest of the scene leaves for it."""
     for thing in [one for one in reader.cast.things if one.count > 1 and one.noun.family in _SINGLE]:
         reader.split(thing)
+    _others(reader.cast)
     for thing in reader.cast.things:
         _share_table(thing)
         check_used(thing, struck=any(one.target is thing for one in reader.cast.things))
@@ -306,6 +347,15 @@ def _settle(reader: Reader) -> None:
     _check_water(reader.cast)
     if not reader.cast.things and not reader.cast.wet and reader.cast.pour is None:
         raise NotUnderstood(["the prompt"], "found nothing to build in")
+
+
+def _others(cast: Cast) -> None:
+    """Let all else in the water do the other than what only some do."""
+    for verb in {verb for _, verb in cast.only}:
+        alone = {id(thing) for thing, one in cast.only if one == verb}
+        for thing in cast.things:
+            if id(thing) not in alone and thing.place == "water":
+                do(thing, {"float": "sink", "sink": "float"}[verb])
 
 
 def _check_water(cast: Cast) -> None:

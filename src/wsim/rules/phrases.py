@@ -35,6 +35,7 @@ class Phrase:
     weight: float | None = None  # against the usual: what is heavy is above 1
     shape: tuple[str, float] | None = None  # the axis along which it is larger than usual, and how much: "tall"
     clauses: list[Action] = field(default_factory=list)  # "that sinks", "floating"
+    only: bool = False  # "only the cork"
     filled: bool = False  # a container that was said to hold water
     places: list[Place] = field(default_factory=list)
 

@@ -51,7 +51,13 @@ def _stand_at(reader: Reader, thing: Thing, place: Place, at: Phrase) -> None:
         if at.kind == "pronoun" and (found.round or found.rod is not None):
             # Nothing stands on a ball, or on what hangs: it is what that is on, or above.
             found = found.path or found.support or found
-        if place.preposition in ("in", "inside", "into"):
+        if part(at) == "middle" and found.noun.family == "turntable":
+            thing.side = "middle"
+        inside = place.preposition in ("in", "inside", "into")
+        vessels = reader.cast.family("vessel")
+        if inside and at.kind == "pronoun" and found.noun.family != "vessel" and len(vessels) == 1:
+            found = vessels[0]
+        if inside and not (part(at) and found.noun.family != "vessel"):
             put_inside(reader, thing, found)
         elif found.noun.family in ("rod", "rope"):
             hang(reader, thing, found)
@@ -144,6 +150,8 @@ def _beside(reader: Reader, thing: Thing, place: Place) -> None:
     assert place.side is not None and place.phrase is not None
     predicate = place.side.predicate
     other = where(reader, place.phrase, thing)
+    if other == "water" and place.phrase.kind == "pronoun" and predicate != "SPAWNED-ABOVE":
+        other = reader.it(place.phrase, thing)  # "a stone is dropped next to it": to what floats
     if predicate == "SPAWNED-ABOVE":
         _above(reader, thing, place, other)
         return

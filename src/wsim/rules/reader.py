@@ -169,8 +169,12 @@ class Reader:
                     [phrase.words], "has to be told what this is made of, as in 'a stack of five boxes'"
                 )
             described = phrase.members
+        stacked = [said for said in described.clauses if said.verb == "stack" and not said.places]
+        described.clauses = [said for said in described.clauses if said not in stacked]  # "two stacked crates"
         thing = Thing(described, self._count(described, phrase.kind == "group"), arrangement=phrase.arrangement)
         thing.phrase.words = phrase.words
+        if stacked and thing.count > 1:
+            thing.arrangement = "stack"
         if thing.kind == "domino" and thing.count > 1:
             thing.arrangement = thing.arrangement or "row"
         if phrase.kind == "group" and thing.noun.family != "solid":
@@ -231,6 +235,8 @@ class Reader:
             among = [thing for thing in self.cast.things if thing.kind == kind.kind]
         else:
             among = self.spoken
+        if phrase.members is not None:
+            among = [one for one in self.cast.things if one.kind == phrase.members.kind] or [self.thing(phrase.members)]
         among = [now for one in among for now in self.now(one)]
         whole = phrase.choice == "all"
         found: list[Thing] = []
@@ -260,7 +266,7 @@ class Reader:
         return singles
 
 
-_ENDED = ("seesaw", "belt", "furniture", "ramp")  # what has ends, edges and a top
+_ENDED = ("seesaw", "belt", "turntable", "furniture", "ramp")  # what has ends, edges and a top
 
 
 def _described(among: list[Thing], phrase: Phrase) -> list[Thing]:

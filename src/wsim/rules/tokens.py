@@ -75,6 +75,17 @@ class Tokens:
                 token.type, token.meaning = "DIMENSION", token.meaning[0]  # "1 m long"
             if token.type == "SIDE" and tokens and tokens[-1].type == "LENGTH":
                 tokens[-1].type = "OFFSET"  # "20 cm behind": the distance, not a size
+            last = tokens[-1].type if tokens else ""
+            if token.type == "COUNT" and str(token) == "one" and last in _LOOKS:
+                token.type = "ONE"  # "a small one"
+            if token.type == "MEASURE" and last == "LENGTH":
+                token.type = "DIMENSION"  # "of 10 cm diameter"
+            if token.type in ("NOUN", *_LOOKS) and last == "VERB" and str(tokens[-1]) in _DONE and len(tokens) > 1:
+                tokens[-1].type = "ING" if tokens[-2].type in ("COUNT", "ART", "THE", *_LOOKS) else "VERB"
+            if token.type == "LENGTH" and (last == "FOR" or last == "AFTER"):
+                token.type = "WAY"  # "for 40 m"
+            if token.type == "LENGTH" and last == "NOUN" and any(_is_drive(one) for one in tokens):
+                token.type = "WAY"  # "drive a truck 50 m"
             if token.type in ("BREAK", "JOIN") and tokens and str(tokens[-1]) in _BELOW:
                 tokens[-1].type, tokens[-1].meaning = "MANNER", "below"  # "falls into a bucket below."
             if token.type == "LENGTH" and (_drives(tokens) or _falls(tokens)):
@@ -151,6 +162,8 @@ class Tokens:
         return self._token("EDGES", tuple(float(here[i]) * factor for i in (0, 2, 4)), at, 6)
 
 
+_LOOKS = ("SCALE", "COLOR", "MATERIAL", "WEIGHT", "SHAPE")
+_DONE = ("stacked", "piled", "submerged")  # what is said before a thing: "two stacked crates"
 _BELOW = ("below", "underneath", "beneath")
 _SHORT = (
     (r"[\u2018\u2019]", "'"),
@@ -193,6 +206,10 @@ def _commanded(tokens: list[Token], known: Lexicon) -> list[Token]:
     for token in tokens:
         token.type = "SHOW" if token.type == "ACTOR" else token.type
     return tokens
+
+
+def _is_drive(token: Token) -> bool:
+    return token.type in ("VERB", "COMMAND") and getattr(token, "meaning", None) == "drive"
 
 
 def _named(value: Any) -> str:

@@ -254,8 +254,15 @@ def _turntable(table: Thing, riders: list[Thing], part: Part, cast: Cast, taken:
     turned = math.radians(spin) * (cast.duration or part.duration)
     if table.spin is not None:
         part.objectives.append(turns(disc.name, spin))
+    if len([item for thing, item in loads if thing.side == "middle"]) > 1:
+        raise UserError(f"{table.words!r}: one thing can stand in its middle, not more")
     for number, (thing, item) in enumerate(loads):
         angle = 2 * math.pi * number / len(loads)
+        if thing.side == "middle":
+            _spun(thing, item, disc, 0.0, 0.0, spin, part)
+            sentence = f"{item.name} stays on {disc.name}."
+            part.objectives.append(Objective(kind="stays_on", object=item.name, ref=disc.name, sentence=sentence))
+            continue
         _spun(thing, item, disc, ring, angle, spin, part)
         part.objectives += _round(item, part.posed[-1].pose, disc, ring, turned)
 
