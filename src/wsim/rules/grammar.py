@@ -84,25 +84,26 @@ class _Clauses(Transformer):
         clauses: list[Clause] = []
         within, later = None, None
         for before, child in pairwise([None, *children]):
-            listed = clauses[-1] if clauses and before == "list" and isinstance(child, Clause) else None
-            if listed is not None and self._list(listed, child):
+            if isinstance(child, Clause) and before == "list" and clauses and self._list(clauses[-1], child):
                 continue
             if isinstance(child, Place) and child.preposition == "after":
-                later = child  # of the next clause alone
+                later = child
             elif isinstance(child, Place):
                 within = child
             elif isinstance(child, Clause):
+                if before is None and clauses and clauses[-1].inverted and not child.actions:
+                    clauses[-1].subjects += child.subjects  # "in a tank there is a stone and a log"
+                    continue
+                if before is None and clauses:
+                    _gapped(clauses[-1], child)
+                if before == "with" and clauses and clauses[-1].actions and not child.actions:
+                    _beside_it(clauses[-1], child)
                 child.within, child.given = within, before == "with"
-                if later is not None and not child.actions:
-                    raise NotUnderstood([later.words], "needs to be told what happens")
-                for action in child.actions if later is not None else []:
-                    action.places.append(later)
-                later = None
-                clauses.append(child)
+                clauses.append(_delayed(child, later))
             elif isinstance(child, tuple):  # "a chair faces a table on which a vase stands"
-                clauses += child
-            elif child == "stop":
-                within = None
+                clauses += [_delayed(one, later) for one in child]
+            elif isinstance(child, str):
+                within, later = (None if child == "stop" else within), None
         return clauses
 
     def full(self, _meta: Any, children: list[Any]) -> Clause:
@@ -136,7 +137,7 @@ class _Clauses(Transformer):
     def command(self, meta: Any, children: list[Any]) -> Clause:
         """ "Drop a ball into a tank": what it does, or has done to it, by what comes after "with"."""
         lead = next(i for i, child in enumerate(children) if _is(child, "COMMAND"))
-        by = next((i for i, child in enumerate(children) if _is(child, "WITH")), len(children))
+        by = next((i for i, child in enumerate(children) if _is(child, "USING")), len(children))
         action = Action(_meaning(children[lead]), self._words(meta))
         things = _phrases(children[lead + 1 : by])
         places = [child for child in children[lead + 1 : by] if isinstance(child, Place)]
@@ -193,7 +194,7 @@ class _Clauses(Transformer):
         places = [child for child in children if isinstance(child, Place)]
         said = next(child for child in children if _is(child, "VERB", "BE"))
         verb = "rest" if _is(said, "BE") else _meaning(said)
-        return Clause(subjects, [Action(verb, self._words(meta), places=places)])
+        return Clause(subjects, [Action(verb, self._words(meta), places=places)], inverted=True)
 
     def within(self, meta: Any, children: list[Any]) -> Place:
         phrase = next(child for child in children if isinstance(child, Phrase))
@@ -381,6 +382,9 @@ class _Clauses(Transformer):
         members.words = str(children[0])
         return Phrase("group", self._words(meta), arrangement=_meaning(children[1]), members=members)
 
+    def kind(self, meta: Any, children: list[Any]) -> Phrase:
+        return self.thing(meta, children)
+
     def weight(self, meta: Any, children: list[Any]) -> Phrase:
         """ "2 kg on one end"."""
         return Phrase("weight", self._words(meta), measures={"mass": _meaning(children[0])})
@@ -388,8 +392,6 @@ class _Clauses(Transformer):
     def each_kind(self, meta: Any, children: list[Any]) -> Phrase:
         """ "Both balls": those that were spoken of, else as many."""
         phrase: Phrase = children[1]
-        if phrase.kind not in self.tokens.known.nouns or phrase.definite:
-            raise self.tokens.fail(children[0].start_pos)
         if str(children[0]) == "both" and phrase.count is None:
             phrase.count = 2
         return Phrase("choice", self._words(meta), definite=True, choice="all", members=phrase)
@@ -521,6 +523,42 @@ class _Clauses(Transformer):
 
     def alone(self, _meta: Any, children: list[Any]) -> Place:
         return Place("bare", words=str(children[0]))
+
+
+def _delayed(clause: Clause, later: Place | None) -> Clause:
+    """What happens after a time: "after two seconds a ball and a box fall"."""
+    if later is not None and not clause.actions:
+        raise NotUnderstood([later.words], "needs to be told what happens")
+    for action in clause.actions if later is not None else []:
+        action.places.append(later)
+    return clause
+
+
+def _gapped(clause: Clause, named: Clause) -> None:
+    """ "Drop a ball into a tank and a box onto a table": the verb is said once."""
+    places = named.subjects[-1].places if named.subjects else []
+    goes = bool(places) and all(place.preposition in _GOALS for place in places)
+    last = clause.actions[-1] if clause.actions else None
+    ends = last is not None and (last.target or (last.places and last.places[-1].phrase))
+    if (
+        ends and not places and not named.actions and last is not None
+    ):  # "rolls into a box and a brick": is it hit, too?
+        raise NotUnderstood([f"{last.words} and {named.words}"], "cannot tell what is said of the last of these")
+    if named.actions or not goes or len(clause.actions) != 1 or clause.actions[0].target is not None:
+        return
+    words = " ".join(place.words for place in places)
+    named.actions = [Action(clause.actions[0].verb, f"{clause.actions[0].verb} {words}", places=places)]
+    named.subjects[-1].places = []
+
+
+def _beside_it(clause: Clause, named: Clause) -> None:
+    """Refuse "drop a ball with a brick", which is of both; "a ball is dropped on a table with a mug on it" is not."""
+    last = clause.actions[-1]
+    if last.target is None and not last.places and last.verb not in ("rest", "float", "run", "tilt", "stack", "swing"):
+        raise NotUnderstood([f"{last.words} with {named.words}"], "cannot tell what is said of the last of these")
+
+
+_GOALS = ("into", "onto", "down", "off", "towards", "against", "via")  # where one goes, and nothing stands
 
 
 def _phrases(children: list[Any]) -> list[Phrase]:

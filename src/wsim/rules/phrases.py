@@ -78,6 +78,7 @@ class Clause:
 
     subjects: list[Phrase] = field(default_factory=list)
     actions: list[Action] = field(default_factory=list)
+    inverted: bool = False  # "on a table stands a lamp": its things come last
     given: bool = False  # after "with": what the things before have
     within: Place | None = None  # of "a tank in which": where all of them are
 

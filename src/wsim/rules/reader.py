@@ -161,6 +161,8 @@ class Reader:
                 raise NotUnderstood([phrase.words], "cannot tell which of them this is")
             if known:
                 return known[0]
+        if phrase.kind in ("things", "one"):
+            raise NotUnderstood([phrase.words], "needs to be told, after a colon, what this is")
         described = phrase
         if phrase.kind == "group":
             _check_adjectives(replace(phrase, shape=None, clauses=[]))

@@ -164,6 +164,7 @@ class Tokens:
 
 _LOOKS = ("SCALE", "COLOR", "MATERIAL", "WEIGHT", "SHAPE")
 _DONE = ("stacked", "piled", "submerged")  # what is said before a thing: "two stacked crates"
+_STRUCK = ("hit", "knock", "topple", "push")  # verbs of what one does with something
 _BELOW = ("below", "underneath", "beneath")
 _SHORT = (
     (r"[\u2018\u2019]", "'"),
@@ -187,7 +188,7 @@ def _commanded(tokens: list[Token], known: Lexicon) -> list[Token]:
 
     "And" goes on commanding only in a sentence that commands: "two balls roll and hit a box" does not.
     """
-    commands, opens = False, True
+    commands, opens, verb = False, True, ""
     for at, token in enumerate(tokens):
         before = tokens[at - 1].type if at else "BREAK"
         after = tokens[at + 1].type if at + 1 < len(tokens) else "BREAK"
@@ -201,6 +202,9 @@ def _commanded(tokens: list[Token], known: Lexicon) -> list[Token]:
             token.type, token.meaning = "COMMAND", {**known.third, **known.commands}[words]
         elif starts and words in known.commands and after not in ("OF", "BREAK", "JOIN"):
             token.type, token.meaning, commands = "COMMAND", known.commands[words], True
+            verb = token.meaning
+        elif token.type == "WITH" and commands and verb in _STRUCK and after != "FORCE":
+            token.type = "USING"  # "knock a tower over with a ball"
         elif token.type in ("VERB", "ING", "BE", "COMMAND"):
             opens = False
     for token in tokens:
