@@ -91,7 +91,7 @@ class _Clauses(Transformer):
             elif isinstance(child, Place):
                 within = child
             elif isinstance(child, Clause):
-                if before is None and clauses and clauses[-1].inverted and not child.actions:
+                if before is None and clauses and clauses[-1].inverted and _names(child):
                     clauses[-1].subjects += child.subjects  # "in a tank there is a stone and a log"
                     continue
                 if before is None and clauses:
@@ -532,6 +532,11 @@ def _delayed(clause: Clause, later: Place | None) -> Clause:
     for action in clause.actions if later is not None else []:
         action.places.append(later)
     return clause
+
+
+def _names(clause: Clause) -> bool:
+    """Whether a clause names things and says no more of them; "one at each end" does, of those before."""
+    return not clause.actions and all(phrase.kind != "choice" for phrase in clause.subjects)
 
 
 def _gapped(clause: Clause, named: Clause) -> None:

@@ -6,12 +6,13 @@ from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.layout.bodies import around
 from wsim.plan.schema import Objective, PlanObject, Registration, Relation
-from wsim.plan.schema.formula_contact import CollidesWith
+from wsim.plan.schema.formula_contact import CollidesWith, SupportedBy
 from wsim.plan.schema.predicates import OVERLAP
 from wsim.rules.cast import Beside, Cast, Thing
 from wsim.rules.places import SIDES
 from wsim.rules.scenes.bounce import bounce, bounces
 from wsim.rules.scenes.hit import hit, meet, struck
+from wsim.rules.scenes.lasting import asked
 from wsim.rules.scenes.legs import on_legs
 from wsim.rules.scenes.motion import ground_object, move, throw_height, top
 from wsim.rules.scenes.part import Part, fall_time, tall, tidy
@@ -323,15 +324,17 @@ def _objectives(thing: Thing, item: PlanObject, lower: str | None, last: bool, c
             return [Objective(kind="collides_with", object=name, ref=lower, sentence=f"{name} falls on {lower}.")]
         cast.assume(thing.words, "nothing is asked of it", f"what is round may stay on {lower} or roll off")
         return []
+    if thing.bridges is not None:
+        return []
     return [Objective(kind="stays_on", object=name, ref=lower, sentence=f"{name} stays on {lower}.")]
 
 
 def _on_both(thing: Thing, name: str, part: Part) -> list[Objective]:
-    """Of a bridge: that it stays on what carries its other end, too."""
-    if thing.bridges is None:
+    """Of a bridge, whose middle is over neither of what carries its ends: that both bear it."""
+    if thing.bridges is None or thing.support is None:
         return []
-    other = part.names[id(thing.bridges)][-1]
-    return [Objective(kind="stays_on", object=name, ref=other, sentence=f"{name} stays on {other}.")]
+    ends = [part.names[id(end)][-1] for end in (thing.support, thing.bridges)]
+    return [asked(name, f"{name} is borne by {end}.", SupportedBy(object=name, ref=end)) for end in ends]
 
 
 def _hit(thing: Thing, cast: Cast) -> bool:
