@@ -1,11 +1,14 @@
 """Plans on disk: what is written comes back, and what is no plan is refused in a line."""
 
 import json
+from pathlib import Path
 
 import pytest
 
+from wsim.agents.shorthand import written_out
 from wsim.errors import UserError
 from wsim.plan import load, save
+from wsim.plan.store import made
 from wsim.rules.planner import plan
 
 PROMPT = "Three wooden blocks float on the water in a glass tank while a steel ball drops in and sinks."
@@ -21,9 +24,9 @@ def of(data: dict, name: str) -> dict:
 
 
 def test_a_plan_survives_its_file(tmp_path):
-    made = plan(PROMPT)
-    save(made, tmp_path / "plan.json")
-    assert load(tmp_path / "plan.json") == made
+    floats = plan(PROMPT)
+    save(floats, tmp_path / "plan.json")
+    assert load(tmp_path / "plan.json") == floats
     assert [path.name for path in tmp_path.iterdir()] == ["plan.json"]
 
 
@@ -104,3 +107,26 @@ def test_places_that_add_up_beyond_the_world_are_refused(tmp_path):
     (tmp_path / "a.json").write_text(json.dumps({"title": "far", "prompt": "", "objects": objects}))
     with pytest.raises(UserError, match=r"a\.json: laid out, it is no plan: position"):
         load(tmp_path / "a.json")
+
+
+def test_a_block_of_water_behind_a_gate_that_has_its_place_is_laid_out() -> None:
+    """The tank and the gate say where they are, and the water only what it is beside."""
+    tank = {"name": "tank", "role": "container", "primitive": "tank", "size": [1.6, 0.24, 0.6], "state": "static"}
+    gate = {"name": "gate", "role": "mechanism", "primitive": "box", "size": [0.04, 0.236, 0.44], "state": "kinematic"}
+    inside = [{"predicate": "PLACE-IN", "ref": "tank"}, {"predicate": "BACK-OF", "ref": "gate", "gap": 0.01}]
+    water = {
+        "name": "water", "role": "fluid", "primitive": "fluid", "size": [0.4, 0.24, 0.3], "state": "fluid",
+        "relations": inside,
+    }  # fmt: skip
+    objects = [tank | {"position": [0, 0, 0]}, gate | {"position": [-0.37, 0, 0.242]}, water]
+    dam = made(written_out({"title": "A dam", "prompt": "Water behind a gate.", "objects": objects}), Path("plan"))
+    pose = dam.objects[-1].pose
+    assert pose is not None and pose.position == pytest.approx((-0.6, 0.0, 0.17), abs=1e-6)
+
+
+def test_a_level_may_name_the_container_once_more() -> None:
+    rows = [{"predicate": "PLACE-IN", "ref": "tank"}, {"predicate": "FREE-SURFACE-AT", "ref": "tank", "value": 0.3}]
+    full = written_out({"objects": [{"name": "water", "primitive": "fluid", "relations": rows}]})
+    assert full["objects"][0]["topology"]["relation"] == [rows[0], {"predicate": "FREE-SURFACE-AT", "value": 0.3}]
+    other = written_out({"objects": [{"name": "water", "primitive": "fluid", "relations": rows[1:]}]})
+    assert other["objects"][0]["topology"]["relation"] == rows[1:]  # of a container that it is not in: not ours to mend

@@ -137,6 +137,37 @@ def test_a_stage_by_other_hands_is_checked(tmp_path, name, kind, value, says):
     assert any(says in problem for problem in check_stage(scene.save(tmp_path / "stage.usda"), []))
 
 
+@pytest.mark.parametrize(
+    ("times", "after", "says"),
+    [
+        ([0, 9], None, "times: 9 s is after the end, at 5 s; leave that key out, or make the run longer"),
+        ([0, 2], Event(touch=("block", "ground"), delay=6), "eventDelay: its delay, and what it counts from, put its"),
+        ([0, 2], Event(end="first", delay=2.5), "times: 2 s, which count from 3.5 s or later, is after the end"),
+        ([0, 2], Event(start="first", delay=2.5), None),
+    ],
+)  # fmt: skip
+def test_what_no_run_comes_to_is_said(tmp_path, times, after, says):
+    scene = world()
+    scene.schedule("first", "bob", "force", times=[0, 1], values=[(1, 0, 0), (0, 0, 0)])
+    scene.schedule("s", "block", "force", times=times, values=[(1, 0, 0), (0, 0, 0)], after=after)
+    problems = check_stage(scene.save(tmp_path / "stage.usda"), [])
+    assert [says] == [says for problem in problems if says in problem] if says else problems == []
+    scene.simulation(duration=10.0)
+    assert check_stage(scene.save(tmp_path / "longer.usda"), []) == []
+
+
+def test_the_joints_of_robots_are_listed():
+    scene = Scene()
+    scene.robot("arm", "desk_arm")
+    for what, says in (
+        ("shoulder", "is not in the scene; known: arm, arm/joints/pan"),
+        ("arm", "of its own; name one"),
+    ):
+        with pytest.raises(SceneError, match=says) as error:
+            scene.schedule("s", what, "velocity", times=[0], values=[1])
+        assert "arm/joints/right_finger" in str(error.value)
+
+
 def test_a_loop_has_no_efforts_on_the_joint_that_closes_it(tmp_path):
     scene = Scene()
     for k, (x, z) in enumerate(((0, 0.5), (0.5, 1), (1, 0.5))):

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from pxr import Sdf
 
+from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.checks.energy import CheckEnergy
 from wsim.judge.checks.fluid_books import CheckFluidMomentum
 from wsim.judge.checks.fluid_push import CheckFluidPush
@@ -188,3 +189,24 @@ def test_what_control_turns_is_not_turned_by_nothing(tmp_path):
     assert all(finding.passed for finding in CheckFreeTurning().run(Evidence(recording)))
     wrong = replace(recording, applied_turn=10.0 * told)
     assert not all(finding.passed for finding in CheckFreeTurning().run(Evidence(wrong)))
+
+
+def test_what_joints_give_under_an_effort_that_grows_is_summed_by_both_ends_of_a_step(tmp_path):
+    """A double pendulum whose elbow is turned ever harder: its momenta are what is recorded, to 1e-4 of that."""
+
+    def build(scene):
+        scene.simulation(duration=0.3, frame_rate=60.0, time_step=1.0 / 400.0)
+        upper, lower = (
+            scene.box(name, size=(0.4, 0.04, 0.04), mass=1.0, position=(x, 0.0, 2.0))
+            for name, x in (("upper", 0.2), ("lower", 0.6))
+        )
+        scene.joint_revolute("shoulder", None, upper, anchor=(0.0, 0.0, 2.0), axis="Y")
+        scene.joint_revolute("elbow", upper, lower, anchor=(0.4, 0.0, 2.0), axis="Y")
+        scene.schedule("twist", "elbow", "effort", times=(0.0, 0.4), values=(0.0, 6.0), linear=True)
+
+    evidence = Evidence(run(tmp_path, build))
+    contacts = RecordedContacts(evidence, evidence.recording.contacts)
+    left = np.linalg.norm(contacts.balanced().force, axis=2)
+    passed = np.linalg.norm(contacts.ties.given[0], axis=2)[1:] / evidence.motion.h[:, None]
+    assert passed.max() > 20.0  # [N]
+    assert left.max() < 1e-4 * passed.max()

@@ -56,10 +56,23 @@ def _object(item: dict[str, Any]) -> dict[str, Any]:
     if isinstance(full.get("construction"), dict):
         full["construction"] = {"kind": "proxy", **full["construction"]}
     if "relations" in full and "topology" not in full:
-        full["topology"] = {"relation": full.pop("relations")}
+        full["topology"] = {"relation": _rows(full.pop("relations"))}
     if isinstance(full.get("position"), list) and "pose" not in full:
         full["pose"] = {"position": full.pop("position"), "rotation_deg": full.pop("rotation_deg", [0, 0, 0])}
     return full
+
+
+def _rows(relations: Any) -> Any:
+    """A level is of the container that the fluid is in: named once more, it says nothing else."""
+    if not isinstance(relations, list) or not all(isinstance(row, dict) for row in relations):
+        return relations
+    inside = {row.get("ref") for row in relations if row.get("predicate") == "PLACE-IN"}
+    return [
+        {key: value for key, value in row.items() if key != "ref" or value not in inside}
+        if row.get("predicate") == "FREE-SURFACE-AT"
+        else row
+        for row in relations
+    ]
 
 
 def _objective(item: dict[str, Any], where: str) -> dict[str, Any]:

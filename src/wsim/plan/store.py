@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from wsim.errors import UserError
 from wsim.plan.layout import LayoutError, layout
 from wsim.plan.layout.land import set_down
-from wsim.plan.schema import PLAN_VERSION, Plan, explain
+from wsim.plan.schema import PLAN_VERSION, Plan, PlanObject, explain
 from wsim.plan.schema.objects import SPREAD
 from wsim.plan.templates import write_out_fluids
 from wsim.plan.views import resolve_all
@@ -42,13 +42,21 @@ def made(data: Any, where: Path) -> Plan:
 
 def _placed(plan: Plan, path: Path) -> Plan:
     try:
-        if all(item.pose is not None or item.primitive in ("ground", "fluid", *SPREAD) for item in plan.objects):
+        if all(item.pose is not None or _needs_none(item) for item in plan.objects):
             return resolve_all(set_down(write_out_fluids(plan)), keep=True)
         return layout(plan)
     except LayoutError as error:
         raise UserError(f"{path}: {error}") from error
     except ValidationError as error:  # rows of numbers in range can add up to a place that is not
         raise UserError(f"{path}: laid out, it is no plan: {explain(error)}") from error
+
+
+def _needs_none(item: PlanObject) -> bool:
+    """Whether the layout has nothing to place: the ground, what is spread over it, fluids but blocks in a container."""
+    if item.primitive != "fluid":
+        return item.primitive in ("ground", *SPREAD)
+    rows = {row.predicate for row in item.relations}
+    return not item.size or "FREE-SURFACE-AT" in rows or "PLACE-IN" not in rows
 
 
 def read(path: str | Path) -> Plan:

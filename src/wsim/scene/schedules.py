@@ -13,12 +13,13 @@ from wsim.limits import MAX_DURATION, MAX_KEYS, MAX_POSITION
 from wsim.quantities import Quantity
 from wsim.scene import schema
 from wsim.scene.articulation import is_kinematic, mark_articulations, may_break, needs_coordinate
-from wsim.scene.authoring import CONTACTS, SCHEDULES, Author, Handle, note_line
+from wsim.scene.authoring import CONTACTS, SCHEDULES, WORLD, Author, Handle, note_line
 from wsim.scene.usd_contacts import ends, owner
 from wsim.scene.usd_schedules import OF_EVENTS, kind_of, lacks
 from wsim.scene.validate import Call, shown, suggestion
 
 UNBREAKABLE = 1e12  # [N]: a joint that lets go is one that breaks, at a load that nothing comes to
+MOST_NAMES = 40  # in a message
 _NAMES = Sdf.ValueTypeNames
 
 
@@ -92,6 +93,8 @@ class Schedules(Author):
         target = self._what_of(call, what)
         kind = kind_of(target)
         found = quantities.OF[kind].get(quantity) if isinstance(quantity, str) else None
+        if found is None and quantity in quantities.JOINT and (joints := _joints_of(target)):
+            call.fail(f"what = {target.GetName()} has joints of its own; name one: {_some(joints)}")
         if found is None:
             call.fail(
                 f"quantity = {shown(quantity)}: what = {target.GetName()} is a {quantities.CALLED[kind]}, which has "
@@ -126,6 +129,11 @@ class Schedules(Author):
     def _what_of(self, call: Call, what: object) -> Usd.Prim:
         """What is scheduled: a prim, or the one that states a pair."""
         if not isinstance(what, (tuple, list)):
+            if isinstance(what, str) and what and not self._stage.GetPrimAtPath(_path_of(what)):
+                joints = _joints_of(self._stage.GetPrimAtPath(WORLD))
+                if joints:
+                    told = suggestion(what, [*self._object_names(), *joints])
+                    call.fail(f"what = {shown(what)} is not in the scene; {told}")
             return self._find(call, "what", what)
         if len(what) != 2:
             call.fail(f"what = {shown(what)}: a pair is two objects")
@@ -212,6 +220,21 @@ class Schedules(Author):
         if not any(prim.HasAPI(UsdPhysics.RigidBodyAPI) and not is_kinematic(prim) for prim in found):
             call.fail(f"{field}: neither of {shown(of)} is a loose body; they never meet")
         return found
+
+
+def _path_of(what: str) -> str:
+    path = what if what.startswith("/") else f"{WORLD}/{what}"
+    return path if Sdf.Path.IsValidPathString(path) else "/"
+
+
+def _joints_of(prim: Usd.Prim) -> list[str]:
+    """The joints at or below a prim, as a call may name them."""
+    below = Usd.PrimRange(prim) if prim else ()
+    return [str(each.GetPath()).removeprefix(f"{WORLD}/") for each in below if each.IsA(UsdPhysics.Joint)]
+
+
+def _some(names: list[str]) -> str:
+    return ", ".join(names[:MOST_NAMES]) + (f", ... ({len(names)})" if len(names) > MOST_NAMES else "")
 
 
 def _times(call: Call, times: object) -> list[float]:

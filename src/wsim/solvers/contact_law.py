@@ -208,9 +208,7 @@ class ContactLawC:
         parts = max(self.smooth_steps.parts(data, smooth), self.smooth_steps.parts_of_reversal(data, rate, smooth))
         held = self.smooth_steps.rubbed(data) | self.smooth_steps.stopped(data, force)
         uneven = pushed | struck | held | (len(self._led) > 0)
-        alone = smooth & (uneven | (parts > 1))
-        # Of these all of the step is recorded by itself.
-        note = self._tell_ties(data, force, smooth & ~uneven, struck, alone)
+        note = self._tell_ties(data, force, (smooth, smooth & ~uneven), struck, parts)
         self.blows.take_from(data)
         if whole and parts == 1:
             self.smooth_steps.step(data, note)
@@ -231,14 +229,18 @@ class ContactLawC:
         if model.nu:
             self._tell_efforts(data)
 
-    def _tell_ties(self, data: Any, force: Array, evenly: Array, struck: Array, alone: Array) -> Note | None:
-        """Record what ties give, but for that which is left to whom it returns: what they give in the smooth steps of
-        some mechanisms `alone`; of those that go on `evenly` the forces at the step's start are the last one's end."""
+    def _tell_ties(
+        self, data: Any, force: Array, smooth: tuple[Array, Array], struck: Array, parts: int
+    ) -> Note | None:
+        """Record what ties give, but for that which is left to whom it returns: what they give in smooth steps of which
+        all is recorded by itself. Smooth are some mechanisms, and of these some by the forces of this start alone."""
         ties = self.ties
         if ties is None:
             return None
-        h = self.model.opt.timestep
-        ties.add(data, h * (~alone | struck), evenly)
+        h, (any_way, evenly) = self.model.opt.timestep, smooth
+        goes_on = ties.goes_on(data, evenly)
+        alone = any_way if parts > 1 else any_way & ~goes_on
+        ties.add(data, h * (~alone | struck), evenly, goes_on)
         if (alone & struck).any():  # of what they gave the blow alone
             both, acceleration = data.efc_force.copy(), data.qacc.copy()
             data.efc_force[:] = force

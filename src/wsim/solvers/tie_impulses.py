@@ -6,7 +6,8 @@ Dynamics Algorithms*, 2008, section 5.3). What acts along the joint's own motion
 that the two can be held against each other.
 
 A step of the first order has the forces of its start. One of Runge and Kutta's has them change: their mean is that of
-its start and its end, which is the next step's start, or where there is none goes on as it came.
+its start and its end, which is the next step's start, or where there is none goes on as it came. Where it did not come
+so either, after a blow or once something was set from outside, its own end is looked at (`goes_on`).
 """
 
 from __future__ import annotations
@@ -53,9 +54,9 @@ class _Step:
 
     starts: bool
     smooth: Array  # whether the step of a joint or a cord is one of Runge and Kutta's, (joints + ends,)
+    goes_on: Array  # and starts as the step before has ended, likewise
     span: Array  # for which it counts there, likewise [s]
     state: Array  # what does not change its size, one after another
-    told: Array  # the drives' targets
     rows: tuple[Array, ...]  # of the constraints: kind, number, force, place
 
 
@@ -64,9 +65,9 @@ class _Frame:
     """The kept steps of a frame, S of them."""
 
     smooth: Array
+    goes_on: Array
     span: Array
-    starts: Array  # which are steps' starts, n of them
-    jumps: Array  # (n,) whether drives were set, or something broke, since the step before
+    starts: Array  # which are steps' starts
     parts: dict[str, Array]
     step: Array  # of each constraint row
     kind: Array
@@ -132,11 +133,13 @@ class TieImpulsesC:
         self._kept: list[_Step] = []
         self._frames: list[tuple[int, TieSumsLater]] = []  # that wait: where their steps end
         self._before: Array | None = None  # what joints and cords gave at the last step's start; NaN where not smooth
-        self._told: Array | None = None  # of that step: how many constraints it had, and what its drives were set to
+        self._goes: Array | None = None  # of the last step: mechanisms that were smooth, (mechanisms,)
+        self._told: Array | None = None  # likewise: how many constraints held what moves, and what was set from outside
         kinds, types = mujoco.mjtConstraint, mujoco.mjtEq
         self._equality, self._rubs = int(kinds.mjCNSTR_EQUALITY), int(kinds.mjCNSTR_FRICTION_DOF)
         self._drives, self._taut = int(kinds.mjCNSTR_FRICTION_TENDON), int(kinds.mjCNSTR_LIMIT_TENDON)
         self._stops = int(kinds.mjCNSTR_LIMIT_JOINT)
+        self._touches = int(kinds.mjCNSTR_CONTACT_FRICTIONLESS)  # the first of the kinds of contacts
         self._weld, self._gear = int(types.mjEQ_WELD), int(types.mjEQ_JOINT)
         sites = [int(model.site_bodyid[k]) if kind == mujoco.mjtWrap.mjWRAP_SITE else -1
                  for kind, k in zip(model.wrap_type, model.wrap_objid, strict=True)]  # fmt: skip
@@ -146,13 +149,41 @@ class TieImpulsesC:
         ]
 
     # ---- step by step
-    def add(self, data: Any, span: Array, smooth: Array | None = None, held: Sequence[Array] = ()) -> None:
+    def goes_on(self, data: Any, smooth: Array) -> Array:
+        """Mechanisms that go on in this step as they came in the last one, of those that are `smooth`, (mechanisms,).
+
+        Of the others the force at a step's end is not told by those of its start and of the step before: that was none
+        of Runge and Kutta's, or something was set from outside since, or broke, or its length is another.
+
+        Args:
+            data: MuJoCo's, of a step's start.
+            smooth: Mechanisms that go by the fourth order, and that nothing strikes, presses or drags.
+        """
+        # Contacts that push a mechanism are known to whoever says what is smooth; those of others are no affair of it.
+        held = np.count_nonzero(data.efc_type < self._touches)
+        told = np.concatenate(
+            [[held, self._model.opt.timestep], data.ctrl, data.qfrc_applied, data.xfrc_applied.ravel()]
+        )
+        same = self._told is not None and np.array_equal(told, self._told)
+        before = self._goes if same and self._goes is not None else np.zeros(len(smooth), dtype=bool)
+        self._told, self._goes = told, smooth.copy()
+        return smooth & before
+
+    def add(
+        self,
+        data: Any,
+        span: Array,
+        smooth: Array | None = None,
+        goes_on: Array | None = None,
+        held: Sequence[Array] = (),
+    ) -> None:
         """Keep what acts in a step, once it is solved and before it is made, or at an instant of it.
 
         Args:
             data: MuJoCo's.
             span: For which it counts, of each mechanism, (mechanisms,) [s]; less than none takes it back.
             smooth: At a step's start: those that go on from it by Runge and Kutta's, with its forces, (mechanisms,).
+            goes_on: Those of them that were so in the step before, which ended with these forces, (mechanisms,).
             held: Rows that act beside those of `data`: kind, number, force, place.
         """
         self._mujoco.mj_rnePostConstraint(self._model, data)
@@ -160,14 +191,13 @@ class TieImpulsesC:
         self._sizes = [len(view) for view in views]
         rows: tuple[Array, ...] = ()
         own, starts = self._mechanism, smooth is not None
-        smooth = np.zeros(len(span), dtype=bool) if smooth is None else smooth
+        none = np.zeros(len(span), dtype=bool)
+        smooth, goes_on = none if smooth is None else smooth, none if goes_on is None else goes_on
         if data.nefc:
             rows = tuple(array.copy() for array in (data.efc_type, data.efc_id, data.efc_force, data.efc_pos))
         if len(held) and len(held[0]):
             rows = tuple(np.concatenate(both) for both in zip(rows, held, strict=True)) if rows else tuple(held)
-        # What is set from outside changes from step to step, and not within one.
-        told = np.concatenate([data.ctrl, data.qfrc_applied, data.xfrc_applied.ravel()])
-        self._kept.append(_Step(starts, smooth[own], span[own], np.concatenate(views), told, rows))
+        self._kept.append(_Step(starts, smooth[own], goes_on[own], span[own], np.concatenate(views), rows))
 
     def take(self) -> TieSumsLater:
         """The sums since the last call, which start anew."""
@@ -179,7 +209,7 @@ class TieImpulsesC:
 
     def clear(self) -> None:
         """Forget the sums: the run starts anew."""
-        self._kept, self._frames, self._before, self._told = [], [], None, None
+        self._kept, self._frames, self._before, self._told, self._goes = [], [], None, None, None
 
     def _sum(self) -> None:
         """Make the sums of all frames that wait."""
@@ -201,16 +231,17 @@ class TieImpulsesC:
 
     def _means(self, acting: Array, frame: _Frame) -> Array:
         """Impulses of each step by what acts at its start, or of what acts in its midst for a while, (S, n)."""
-        span = np.repeat(frame.span, self._widths, axis=1)
+        span, smooth, goes_on = (
+            np.repeat(array, self._widths, axis=1) for array in (frame.span, frame.smooth, frame.goes_on)
+        )
         found = span * acting
         starts = frame.starts
-        smooth, jumps = np.repeat(frame.smooth, self._widths, axis=1)[starts], frame.jumps[:, None]
-        acting, none = acting[starts], np.full(acting.shape[1], np.nan)
+        smooth, acting, none = smooth[starts], acting[starts], np.full(acting.shape[1], np.nan)
         known = np.where(smooth, acting, np.nan)
         before = np.concatenate([[none if self._before is None else self._before], known[:-1]])
-        after = np.where(jumps | np.isnan(before), acting, 2.0 * acting - before)
-        follows = np.concatenate([np.where(jumps[1:], np.nan, known[1:]), [none]])
-        after = np.where(np.isnan(follows), after, follows)
+        follows = np.concatenate([np.where(goes_on[starts][1:], acting[1:], np.nan), [none]])
+        after = np.where(np.isnan(follows), 2.0 * acting - before, follows)
+        after = np.where(np.isnan(after), acting, after)  # of a step that is looked at by itself
         self._before = known[-1]
         found[starts] = np.where(smooth, 0.5 * span[starts] * (acting + after), found[starts])
         return found
@@ -226,12 +257,11 @@ class TieImpulsesC:
         else:
             columns = [np.zeros(0, dtype=int), np.zeros(0, dtype=int), np.zeros(0), np.zeros(0)]
         starts = np.flatnonzero([step.starts for step in kept])
-        told = np.array([(len(kept[k].rows[0]) if kept[k].rows else 0, *kept[k].told) for k in starts])
-        jumps = np.any(told != np.concatenate([told[:1] if self._told is None else self._told, told[:-1]]), axis=1)
-        self._told = told[-1:]
         number = np.repeat([k for k, _ in steps], [len(rows[0]) for _, rows in steps]).astype(int)
-        smooth, span = (np.array([getattr(step, name) for step in kept]) for name in ("smooth", "span"))
-        return _Frame(smooth, span, starts, jumps, parts, number, *columns)
+        smooth, goes_on, span = (
+            np.array([getattr(step, name) for step in kept]) for name in ("smooth", "goes_on", "span")
+        )
+        return _Frame(smooth, goes_on, span, starts, parts, number, *columns)
 
     # ---- cords
     def _of_cords(self, frame: _Frame) -> Array:

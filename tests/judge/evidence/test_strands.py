@@ -33,3 +33,18 @@ def test_a_vehicle_is_one_thing(tmp_path: Path) -> None:
     scene.box("crate", size=(0.1, 0.1, 0.1), position=(5.0, 0.0, 0.0))
     found = strands(describe(scene.save(tmp_path / "stage.usda")))
     assert sorted(len(thing) for thing in found) == [1, 11]
+
+
+def test_what_is_fixed_for_good_is_one_thing(tmp_path: Path) -> None:
+    """A door with its handle; not a bob on a hook that may break, nor one that is let go."""
+    scene = Scene()
+    for k, name in enumerate(("door", "handle", "beam", "bob", "arm", "load")):
+        scene.box(name, size=(0.1, 0.1, 0.1), position=(0.1 * k, 0.0, 1.0))
+    scene.joint_fixed("screws", "door", "handle")
+    scene.joint_fixed("hook", "beam", "bob", break_force=50.0)
+    grip = scene.joint_fixed("grip", "arm", "load")
+    scene.schedule("drop", grip, "release", times=(1.0,))
+    found = strands(describe(scene.save(tmp_path / "stage.usda")))
+    assert sorted([body.prim[7:] for body in thing] for thing in found) == [
+        ["arm"], ["beam"], ["bob"], ["door", "handle"], ["load"]
+    ]  # fmt: skip

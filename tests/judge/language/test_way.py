@@ -92,6 +92,15 @@ def test_what_it_meets_below_the_ramp_is_another_story():
     assert found("rolls(ball)", ball).margin[0] == pytest.approx(0.25 - 0.5, abs=0.02)
 
 
+def test_a_hop_as_it_is_set_down_does_not_end_its_rolling():
+    """It comes down without turning, hops by its radius, and rolls after that."""
+    ball = down_the_ramp([3.0])
+    hops = (TIME > 0.1) & (TIME < 0.2)
+    ball.body_q[:, hops, 0, :3] += RADIUS * NORMAL
+    ball.body_qd[:, TIME < 0.2, 0, 3:] = 0.0
+    assert found("rolls(ball, ramp)", ball).margin[0] == pytest.approx(0.5, abs=0.01)
+
+
 def thrown(lands=2.0, off=0.0):
     """A ball thrown up, that touches something at a time, and drifts off its parabola by as much a second squared."""
     ball = solid("ball", shape("sphere", RADIUS), velocity=(2.0, 0.0, 8.0))

@@ -84,7 +84,7 @@ def test_a_reason_for_everything_that_happens_is_no_answer() -> None:
     ("clause", "message"),
     [
         ({"words": "flies", "by": [1]}, r"clauses\.0\.by: no objective 1; the plan has 1, and they count from 0"),
-        ({"words": "flies", "by": ["bird"]}, r"clauses\.0\.by: no object, joint or cord 'bird'"),
+        ({"words": "flies", "by": ["bird"]}, r"clauses\.0\.by: no object, joint, cord or schedule 'bird'"),
         ({"words": "flies", "by": ["ball.mood"]}, r"clauses\.0\.by: ball has no 'mood' that is checked; it has size"),
         ({"words": "flies"}, r'give "by", the objectives and objects that show it, or "unchecked"'),
         ({"words": "flies", "by": [0], "unchecked": "so"}, r'give "by"'),
@@ -147,3 +147,35 @@ def test_what_is_denied_or_one_of_several_ways_shows_nothing(formula: str, shows
 def test_a_clause_has_words() -> None:
     with pytest.raises(UserError, match="words"):
         plan([{"words": "", "by": [0]}])
+
+
+PUSH = {
+    "name": "shove", "of": "ball", "quantity": "force", "times": [0.5, 2.5], "values": [[0, 30, 40], [0, 0, 0]],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("words", "by", "gaps"),
+    [
+        ("pushed with 50 N for two seconds", ["shove"], []),
+        ("pushed with 50 N for two seconds", ["shove.values"], ["two seconds"]),
+        ("pushed with 60 N for three seconds", ["shove"], ["60 N", "three seconds"]),
+        ("stops after half a second", ["shove"], ["stops"]),  # that is seen, not set
+    ],
+)
+def test_a_schedule_answers_for_what_it_does(words: str, by: list[str], gaps: list[str]) -> None:
+    clauses = [{"words": words, "by": by}, {"words": "flies half a metre", "by": [0]}]
+    made = plan(clauses, f"A ball is {words} and flies half a metre.", schedules=[PUSH], simulation={"duration": 3})
+    assert [gap.demand.text for gap in missing(made)] == gaps
+
+
+@pytest.mark.parametrize(
+    ("spring", "by", "silent"), [(True, [0], []), (False, [0], ["compresses"]), (True, [], ["compresses"])]
+)
+def test_a_spring_is_compressed_as_no_body_is(spring: bool, by: list[int], silent: list[str]) -> None:
+    cord = {"name": "coil", "kind": "spring", "b": "ball", "anchor_a": [0, 0, 3], "stiffness": 100, "rest_length": 1}
+    clause = {"words": "the coil compresses", "by": by} if by else {"words": "ball", "by": ["ball"]}
+    clauses = [clause, {"words": "flies half a metre", "by": [0]}]
+    prompt = "A ball flies half a metre and the coil compresses."
+    made = plan(clauses, prompt, **({"cords": [cord]} if spring else {}))
+    assert [gap.demand.text for gap in missing(made)] == silent

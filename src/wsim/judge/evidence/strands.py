@@ -15,7 +15,8 @@ def strands(world: World) -> list[list[Body]]:
     """All bodies, each by itself or as one thing with others.
 
     Of a cable with its other links, capsules of one radius on ball joints. A body of which nothing collides is an inner
-    part, as what is between a wheel and its spring: with all that joints tie to it, it is one thing, a vehicle.
+    part, as what is between a wheel and its spring: with all that joints tie to it, it is one thing, a vehicle. So is
+    what is fixed to another for good: a door with its handle.
     """
     of = {body.prim: [body] for body in world.bodies}
     bodies = {body.prim: body for body in world.bodies}
@@ -32,6 +33,8 @@ def strands(world: World) -> list[list[Body]]:
 def _together(one: Body, other: Body, joint: Joint) -> bool:
     """Whether both ends of a joint are one thing."""
     if any(end.shapes and not any(shape.collides for shape in end.shapes) for end in (one, other)):
+        return True
+    if joint.kind == "fixed" and not joint.closing:
         return True
     return joint.kind == "spherical" and _alike(_radius(one), _radius(other))
 

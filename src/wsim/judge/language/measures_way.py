@@ -77,18 +77,26 @@ def _downhill(signals: Signals, name: str, ref: str) -> Floats:
 
 def _on_it(signals: Signals, name: str, ref: str | None) -> Bools:
     """Whether a body has not left another object yet (W, T): what it meets then is another story. All, without one."""
-    if ref is None:
-        return np.ones((signals.count, len(signals.time)), dtype=bool)
-    gap = signals.fold(distance(signals.frames(name, ref), signals.prim(name), signals.prim(ref)))
-    near = gap <= PARTING * signals.solid(name).smallest
+    near = _near(signals, name, ref)
     left = ~near & np.logical_or.accumulate(near, axis=1)
     return ~np.logical_or.accumulate(left, axis=1)
 
 
+def _near(signals: Signals, name: str, ref: str | None) -> Bools:
+    """Whether a body is on another object, or all but (W, T). All, without one."""
+    if ref is None:
+        return np.ones((signals.count, len(signals.time)), dtype=bool)
+    gap = signals.fold(distance(signals.frames(name, ref), signals.prim(name), signals.prim(ref)))
+    return np.asarray(gap <= PARTING * signals.solid(name).smallest)
+
+
 @measures(Rolls)
 def _rolls(asked: Rolls, signals: Signals) -> list[Measure]:
-    """The way that its turning would carry it, over the way that it makes: 1 is rolling, 0 sliding (W, T)."""
-    here, twist = _on_it(signals, asked.object, asked.on), signals.qd(asked.object)
+    """The way that its turning would carry it, over the way that it makes: 1 is rolling, 0 sliding (W, T).
+
+    Of all the time that it is there, hops left out: what is set down, held and let go rolls after that.
+    """
+    here, twist = _near(signals, asked.object, asked.on), signals.qd(asked.object)
     turned = (np.linalg.norm(twist[..., 3:], axis=-1) * here).sum(axis=1) * signals.solid(asked.object).smallest / 2
     made = (np.linalg.norm(twist[..., :3], axis=-1) * here).sum(axis=1)
     share = np.where(made > 0.0, turned / np.where(made > 0.0, made, 1.0), np.nan)

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 
 from wsim.plan.layout.boxes import rotation
 from wsim.plan.schema.clause import OF_CORDS, WHOLE
+from wsim.plan.schema.formula import Always, Mean, Predicate
 
 if TYPE_CHECKING:
     from wsim.plan.asked.demands import Demand
     from wsim.plan.schema import Joint, Objective, Plan, PlanObject
+    from wsim.plan.schema.schedules import SchedulePlan
 
 ROUNDING = 0.05  # share: "about half a metre" is planned as 0.48 m
 FIELDS = {  # by unit: where a number of it may stand in an object or a joint that is named without a property
@@ -27,6 +29,8 @@ def states(plan: Plan, name: str, field: str, demand: Demand) -> bool:
     """Whether a property has a number; without one, any that may. Places are differences, and are not compared."""
     if field in OPEN:
         return True
+    if name in {each.name for each in plan.schedules}:
+        field = field or ("times" if demand.unit == "s" else "values")
     fields = (field,) if field else FIELDS.get(demand.unit, ())
     return any(close(value, demand) for each in fields for value in values(plan, name, each))
 
@@ -46,6 +50,24 @@ def asks(objective: Objective, demand: Demand) -> bool:
         if any(close(value, demand) for value in _numbers(fields.values())):
             return True
     return False
+
+
+def asks_by_then(objective: Objective, demand: Demand) -> bool:
+    """Whether an objective asks for something by a time: in a window that ends by then, or from then on."""
+    for node in objective.formula.walk() if objective.formula is not None else ():
+        windows = getattr(node, "windows", None) or (getattr(node, "window", None),)
+        holds = isinstance(node, Always | Mean)
+        if any(w is not None and ends_by(w[0] if holds else w[1], demand) for w in windows):
+            return True
+        if isinstance(node, Predicate) and any(close(value, demand) for value in _numbers(dict(node).values())):
+            return True
+    return False
+
+
+def ends_by(time: float | None, demand: Demand) -> bool:
+    """Whether a time is a stated one, or before it."""
+    assert demand.value is not None
+    return time is not None and time <= demand.value * (1.0 + ROUNDING)
 
 
 def _between(low: float, high: float, demand: Demand) -> bool:
@@ -82,6 +104,9 @@ def values(plan: Plan, name: str, field: str) -> Iterator[float]:
     for cord in plan.cords:
         if cord.name == name and field in OF_CORDS:
             yield from (value for value in (getattr(cord, field),) if value is not None)
+    for schedule in plan.schedules:
+        if schedule.name == name:
+            yield from _of_schedule(schedule, field)
 
 
 def _of_object(plan: Plan, item: PlanObject, field: str) -> Iterator[float]:
@@ -131,3 +156,16 @@ def _of_joint(joint: Joint, field: str) -> Iterator[float]:
         yield from joint.limits or ()
     elif field == "drive" and joint.drive is not None:
         yield from (joint.drive.velocity, joint.drive.position, joint.drive.max_force or 0.0)
+
+
+def _of_schedule(schedule: SchedulePlan, field: str) -> Iterator[float]:
+    """Its keys' values, or their times, how long it is from one to another, and its delay [s]."""
+    if field == "times":
+        times = schedule.times
+        yield from (abs(one - other) for one in times for other in (0.0, *times))
+        if schedule.after is not None:
+            yield schedule.after.delay or 0.0
+    elif field == "values":
+        for value in schedule.values:
+            vector = value if isinstance(value, tuple) else (value,)
+            yield from (*vector, math.hypot(*vector))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from wsim.plan.schema.clause import OF_CORDS, OF_JOINTS, OF_OBJECTS, WHOLE
+from wsim.plan.schema.clause import OF_CORDS, OF_JOINTS, OF_OBJECTS, OF_SCHEDULES, WHOLE
 
 if TYPE_CHECKING:
     from wsim.plan.schema.draft import Draft
@@ -13,8 +13,11 @@ if TYPE_CHECKING:
 
 def clause_problems(plan: Draft) -> Iterator[str]:
     """What a clause names and the plan has not."""
-    objects, joints = {item.name for item in plan.objects}, {joint.name for joint in plan.joints}
-    cords = {cord.name for cord in plan.cords}
+    fields: dict[str, tuple[str, ...]] = {WHOLE: ("duration",)}
+    for things, checked in (
+        (plan.schedules, OF_SCHEDULES), (plan.cords, OF_CORDS), (plan.joints, OF_JOINTS), (plan.objects, OF_OBJECTS),
+    ):  # fmt: skip
+        fields |= {each.name: checked for each in things}
     for i, clause in enumerate(plan.clauses):
         for number in clause.objectives:
             if number >= len(plan.objectives):
@@ -22,9 +25,8 @@ def clause_problems(plan: Draft) -> Iterator[str]:
                     f"clauses.{i}.by: no objective {number}; the plan has {len(plan.objectives)}, and they count from 0"
                 )
         for name, field in clause.things:
-            fields: tuple[str, ...] = OF_OBJECTS if name in objects else OF_JOINTS if name in joints else OF_CORDS
-            fields = fields if name != WHOLE else ("duration",)
-            if name not in objects | joints | cords | {WHOLE}:
-                yield f"clauses.{i}.by: no object, joint or cord {name!r}; name one, or an objective by its number"
-            elif field and field not in fields:
-                yield f"clauses.{i}.by: {name} has no {field!r} that is checked; it has {', '.join(fields)}"
+            if name not in fields:
+                kinds = "object, joint, cord or schedule"
+                yield f"clauses.{i}.by: no {kinds} {name!r}; name one, or an objective by its number"
+            elif field and field not in fields[name]:
+                yield f"clauses.{i}.by: {name} has no {field!r} that is checked; it has {', '.join(fields[name])}"

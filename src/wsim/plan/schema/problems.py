@@ -278,9 +278,10 @@ def _others(plan: Draft) -> Iterator[str]:
     for i, sensor in enumerate(plan.sensors):
         if sensor.mount is not None and sensor.mount not in names:
             yield f"sensors.{i}.mount: no object {sensor.mount!r}; the plan has {_known(plan)}"
+    tied = {each.name for things in (plan.joints, plan.cords, plan.schedules) for each in things}
     for i, step in enumerate(plan.steps):
         for j, name in enumerate(step.objects):
-            if name not in names:
+            if name not in names | tied:
                 yield f"steps.{i}.objects.{j}: no object {name!r}; the plan has {_known(plan)}"
     for i, name in enumerate(plan.outputs.stills):
         if name not in cameras:
