@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
+from collections.abc import Sequence
 from typing import Any
 
 from lark import Token
@@ -53,7 +54,7 @@ class Tokens:
         self.spans = [match.span() for match in _WORD.finditer(self.text)]
         self.words = [self.text[a:b] for a, b in self.spans]
 
-    def all(self) -> list[Token]:
+    def all(self) -> list[Meant]:
         """The tokens.
 
         Raises:
@@ -63,7 +64,7 @@ class Tokens:
         unknown = [w for w in dict.fromkeys(self.words) if not w[0].isdigit() and w not in vocabulary]
         if unknown:
             raise NotUnderstood(unknown, UNKNOWN)
-        tokens: list[Token] = []
+        tokens: list[Meant] = []
         at = 0
         while at < len(self.words):
             found = self._edges(at) or self._measure(at) or self._often(at) or self._entry(at)
@@ -183,7 +184,7 @@ def _in_full(text: str) -> str:
     return text
 
 
-def _commanded(tokens: list[Token], known: Lexicon) -> list[Token]:
+def _commanded(tokens: list[Meant], known: Lexicon) -> list[Meant]:
     """The tokens, with what is commanded as such: a verb's own form where a clause starts, or where "someone" does it.
 
     "And" goes on commanding only in a sentence that commands: "two balls roll and hit a box" does not.
@@ -225,12 +226,12 @@ def _long_unit(known: Lexicon, words: list[str]) -> bool:
     return known.units.get(tuple(words), ("",))[0] in ("LENGTH", "MASS") and len(words[0]) > 2
 
 
-def _falls(tokens: list[Token]) -> bool:
+def _falls(tokens: Sequence[Token]) -> bool:
     """Whether what comes next is how far something falls: "falls 2 m"."""
     return bool(tokens) and tokens[-1].type == "VERB" and getattr(tokens[-1], "meaning", None) in ("fall", "drop")
 
 
-def _drives(tokens: list[Token]) -> bool:
+def _drives(tokens: Sequence[Token]) -> bool:
     """Whether what comes next is how far something drives: "drives", "drives forward for"."""
     last = next((token for token in reversed(tokens) if token.type not in ("FOR", "DIRECTION")), None)
     return last is not None and last.type in ("VERB", "ING") and getattr(last, "meaning", None) == "drive"
