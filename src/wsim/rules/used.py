@@ -121,5 +121,6 @@ def _manners(thing: Thing, struck: bool) -> tuple[tuple[bool, str], ...]:
         ("below" in said and thing.into is None, "lets things fall into a vessel below them, but not this:"),
         ("in_turn" in said and "topple" not in does, "lets things fall one after another, but not this"),
         (thing.times is not None and "bounce" not in does, "counts bounces, but not this"),
+        (thing.times is not None and "throw" in does, "counts bounces of what falls, not of what is thrown:"),
         (flat and on != "seesaw", "puts things at the ends of a seesaw, but not of this"),
     )  # fmt: skip

@@ -7,11 +7,12 @@ import math
 from wsim.defaults import GRAVITY
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Pose, Vec3
+from wsim.plan.schema.formula_motion import Drops
 from wsim.plan.schema.formula_place import Reaches
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.materials import material_named
 from wsim.rules.scenes.catch import catcher, lands
-from wsim.rules.scenes.lasting import turns
+from wsim.rules.scenes.lasting import asked, turns
 from wsim.rules.scenes.part import Part, fall_time, pair_friction, tall, tidy
 from wsim.rules.sizes import bodies
 
@@ -110,6 +111,7 @@ def _catch(thing: Thing, item: PlanObject, end: float, speed: float, part: Part,
     [made] = bodies(vessel, cast, taken)
     caught = catcher(thing, made, item, speed, HEIGHT, cast)
     at = Pose(position=(tidy(end + caught.way), 0.0, 0.0))
+    part.objectives.append(asked(item.name, f"{item.name} leaves the belt and falls.", Drops(object=item.name)))
     part.objectives.append(lands(item.name, made.name))
     part.objects.append(caught.vessel.model_copy(update={"pose": at}))
     part.names[id(vessel)] = [caught.vessel.name]
