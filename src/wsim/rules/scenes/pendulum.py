@@ -69,12 +69,14 @@ def _hang(hanging: Hanging, cast: Cast, taken: set[str]) -> Part:
     clear = CLEARANCE if thing.drop_height is None else thing.drop_height
     height = round(length + hanging.half + clear, 3) if struck is None else tidy(struck.height + length)
     below = "the ground" if thing.support is None else thing.support.words
-    up = "point" if hanging.rope else "hinge"
-    cast.assume(thing.words, f"hangs from a {up} {height:g} m above {below}", f"so that it clears {below}")
+    held = "point" if hanging.rope else "hinge"
+    cast.assume(thing.words, f"hangs from a {held} {height:g} m above {below}", f"so that it clears {below}")
     turn = math.radians(-angle if struck is not None else angle)
     if hanging.rope and "die" not in thing.does:
         body = _on_rope(hanging, turn, height, part, taken)
         _ask(hanging, body, angle, struck, part, cast)
+        up = (tidy(-length * math.sin(turn)), 0.0, tidy(length * math.cos(turn)))
+        part.goes.setdefault(body.name, []).append(up)  # to where the rope ends, which is to be seen
         return part
     rod, body = _pose(hanging, turn, height, cast, taken)
     part.posed += [rod, body]
