@@ -83,6 +83,28 @@ def test_a_servo_follows_a_velocity_by_its_damping_and_is_pulled_back_by_its_sti
 
 
 @BOTH
+def test_any_hinge_of_a_loop_takes_an_effort(simulate, worlds):
+    """In a parallelogram the coupler goes as fast as the arms' ends: M = (2 I + m L^2) a, I of an arm about its pin."""
+    arm, coupler, length, torque = 1.0, 2.0, 0.5, 0.3
+
+    def build(scene):
+        scene.simulation(gravity=(0, 0, 0))
+        for name, x in (("left", 0.0), ("right", 1.0)):
+            scene.box(name, size=(0.05, 0.05, length), mass=arm, position=(x, 0, length / 2))
+        scene.box("bar", size=(1, 0.05, 0.05), mass=coupler, position=(0.5, 0, length))
+        pins = {"a": (None, "left", 0, 0), "b": ("left", "bar", 0, length), "c": ("bar", "right", 1, length)}
+        for name, (parent, child, x, z) in (pins | {"d": (None, "right", 1, 0)}).items():
+            scene.joint_revolute(name, parent, child, anchor=(x, 0, z), axis="Y")
+        scene.schedule("turn", "d", "effort", times=[0.0], values=[torque])
+
+    run = simulate(build, 0.3, worlds)
+    own = arm * (length**2 + 0.05**2) / 12.0 + arm * length**2 / 4.0
+    expected = torque / (2.0 * own + coupler * length**2) * 0.3
+    assert run.w["right"][-1, 1] == pytest.approx(expected, rel=5e-3)
+    assert run.w["left"][-1, 1] == pytest.approx(expected, rel=5e-3)
+
+
+@BOTH
 def test_a_force_acts_where_it_is_applied_and_as_long_as_its_keys_say(simulate, worlds):
     """Between keys that no step meets, too: the impulse is exact. Off the centre it turns by F r t / I."""
 

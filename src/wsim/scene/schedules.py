@@ -12,7 +12,7 @@ from wsim import quantities
 from wsim.limits import MAX_DURATION, MAX_KEYS, MAX_POSITION
 from wsim.quantities import Quantity
 from wsim.scene import schema
-from wsim.scene.articulation import is_kinematic, mark_articulations, may_break, needs_coordinate
+from wsim.scene.articulation import COORDINATES, is_kinematic, mark_articulations, may_break, needs_coordinate
 from wsim.scene.authoring import CONTACTS, SCHEDULES, WORLD, Author, Handle, note_line
 from wsim.scene.usd_contacts import ends, owner
 from wsim.scene.usd_schedules import OF_EVENTS, kind_of, lacks
@@ -100,6 +100,8 @@ class Schedules(Author):
                 f"quantity = {shown(quantity)}: what = {target.GetName()} is a {quantities.CALLED[kind]}, which has "
                 f"{quantities.said(kind)}"
             )
+        if quantity in COORDINATES:
+            self._give_coordinate(target)
         if (wrong := lacks(target, quantity)) is not None:
             call.fail(f"{target.GetName()}: {wrong}")
         self._check_unscheduled(call, target, quantity)
@@ -157,6 +159,12 @@ class Schedules(Author):
                     "into one"
                 )
 
+    def _give_coordinate(self, joint: Usd.Prim) -> None:
+        """Let another joint close a loop in place of one that is scheduled, or that an event is of, if one can."""
+        api = UsdPhysics.Joint(joint)
+        if joint.IsA(UsdPhysics.RevoluteJoint) and api.GetExcludeFromArticulationAttr().Get() and not may_break(api):
+            mark_articulations(self._stage, needing=[joint.GetPath()])
+
     def _let_go(self, call: Call, joint: Usd.Prim) -> None:
         api = UsdPhysics.Joint(joint)
         if needs_coordinate(api):
@@ -209,6 +217,7 @@ class Schedules(Author):
             prim = self._find(call, field, of)
             if not any(prim.IsA(each) for each in (UsdPhysics.RevoluteJoint, UsdPhysics.PrismaticJoint)):
                 call.fail(f"{field} = {shown(prim.GetName())} is no hinge and no slider, which alone pass a value")
+            self._give_coordinate(prim)
             return [prim]
         pair = call.listed(field, of, "two objects")
         found = [self._find(call, f"{field}[{k}]", each) for k, each in enumerate(pair)]

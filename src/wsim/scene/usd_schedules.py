@@ -11,7 +11,7 @@ from wsim import quantities
 from wsim.limits import MAX_DURATION, MAX_KEYS, MAX_POSITION
 from wsim.quantities import What
 from wsim.scene import schema
-from wsim.scene.articulation import is_kinematic, may_break
+from wsim.scene.articulation import COORDINATES, is_kinematic, may_break
 from wsim.scene.usd_values import duration_of, targets_of, value_of
 
 OF_EVENTS = {"touch": "touch", "body": "place", "joint": "joint", "start": "start", "end": "end"}
@@ -30,7 +30,7 @@ def kind_of(prim: Usd.Prim) -> What:
 
 def lacks(target: Usd.Prim, quantity: str) -> str | None:
     """What a thing lacks for a schedule of a quantity of its kind; None where it has all."""
-    if quantity in ("position", "velocity", "effort") and target.IsA(UsdPhysics.Joint):
+    if quantity in COORDINATES and target.IsA(UsdPhysics.Joint):
         return _joint_lacks(target, quantity)
     if quantity in quantities.KINEMATIC and not target.IsA(UsdPhysics.Joint) and schema.has(target, schema.PATH):
         return "it has a path, which says where it goes; leave one of the two out"
@@ -49,7 +49,10 @@ def _joint_lacks(joint: Usd.Prim, quantity: str) -> str | None:
     if UsdPhysics.Joint(joint).GetExcludeFromArticulationAttr().Get():
         if may_break(UsdPhysics.Joint(joint)):
             return f"it may break or let go, and has no {quantity}: schedule a force or a torque of its body"
-        return f"it closes a loop, and has no {quantity}: schedule another joint of the loop"
+        return (
+            f"it closes a loop, and has no {quantity}: the other joints of the loop slide, or have drives, limits, "
+            "friction, gears or schedules; leave one of them a plain hinge, or schedule one of them"
+        )
     drive = UsdPhysics.DriveAPI.Get(joint, "angular" if joint.IsA(UsdPhysics.RevoluteJoint) else "linear")
     if quantity == "effort":
         return None

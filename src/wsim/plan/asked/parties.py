@@ -55,16 +55,25 @@ def strangers(plan: Plan, demand: Demand, objectives: Sequence[Objective]) -> st
     found = _parties(Words.of(plan.prompt), plan, demand)
     if found.bears is None:
         return ""
+    bears = _whole(plan, found.bears)
     asked = [(_involved(each, plan), each) for each in objectives]
     if any(names is None for names, _ in asked):
         return ""
     known = [(names, each) for names, each in asked if names is not None]
     for doer in found.does or (None,):
-        if not any(_is_about(names, doer, found.bears) for names, _ in known):
+        if not any(_is_about(names, doer and _whole(plan, doer), bears) for names, _ in known):
             who = f"{_said(doer)} and {_said(found.bears)}" if doer else _said(found.bears)
             about = "; ".join(" and ".join(sorted(names)) for names, _ in known)
             return f"it is said of {who}, and the objectives that are named for it are about {about}"
     return ""
+
+
+def _whole(plan: Plan, names: Names) -> Names:
+    """Things with all that is tied to them: what hits a lever's paddle hits the lever, and a scale is its pan."""
+    ties = [{joint.child, joint.parent} for joint in plan.joints] + [{cord.a, cord.b} for cord in plan.cords]
+    while more := {name for tie in ties if names & tie for name in tie if name is not None} - names:
+        names |= more
+    return names
 
 
 def _said(names: Names) -> str:

@@ -119,7 +119,7 @@ def _beyond(each: Said, joint: Joint) -> Iterator[str]:
         sign = _LEANS.get((joint.axis, axis), 0.0)
     if not sign:
         return
-    own = sorted(sign * limit for limit in (low, high))
+    own = sorted(sign * limit + 0.0 for limit in (low, high))
     if each.fields["high"] < own[0] - slack or each.fields["low"] > own[1] + slack:
         asked = f"{each.name} {axis} {each.fields['low']:g} to {each.fields['high']:g} {unit}"
         yield f"{each.where}: {asked} of {each.object}, and {joint.name}'s limits are {own[0]:g} to {own[1]:g}; {_WAY}"
