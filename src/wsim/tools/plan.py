@@ -147,7 +147,18 @@ def _objects(plan: Plan, name: str) -> list[str]:
         "object", "what", "state", "material", "kg/m^3", "kg", "size [m]", "place [m]", "turned [deg]", "m/s",
         "surface m/s", "friction", "restitution", "rolling",
     )  # fmt: skip
-    return table(head, rows) if rows else []
+    return [*table(head, rows), *_moved(plan, name)] if rows else []
+
+
+def _moved(plan: Plan, name: str) -> list[str]:
+    """What drives objects, as the plan has it: the route of a vehicle, the reaches of an arm."""
+    found = []
+    for item in plan.objects:
+        for each in item.registration.actuation if name in ("", item.name) else ():
+            said = each.model_dump(mode="json", exclude_defaults=True, exclude={"kind", "words"})
+            told = ", ".join(f"{key} {json.dumps(value)}" for key, value in said.items())
+            found.append(f"{item.name} is moved by {each.kind}{f': {told}' if told else ''}")
+    return found
 
 
 def _surface(item: PlanObject) -> list[str]:
