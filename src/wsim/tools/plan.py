@@ -246,8 +246,11 @@ def _schedules(plan: Plan, name: str) -> list[str]:
         keys = zip(each.times, each.values or ("",) * len(each.times), strict=True)
         said = "; ".join(f"{number(time)} s: {_value(value)}".rstrip(": ") for time, value in keys)
         event = "" if each.after is None else each.after.model_dump_json()
-        rows.append([each.name, " and ".join(of), each.quantity, said, event])
-    return table(("schedule", "of", "quantity", "by time", "after"), rows) if rows else []
+        point = numbers(each.point) if each.point is not None else ""
+        ramps = "yes" if each.linear or (each.linear is None and each.quantity == "position") else ""
+        rows.append([each.name, " and ".join(of), each.quantity, said, ramps, point, event])
+    head = ("schedule", "of", "quantity", "by time", "straight between", "at point [m]", "after")
+    return table(head, rows) if rows else []
 
 
 def _value(value: float | tuple[float, ...] | str) -> str:
