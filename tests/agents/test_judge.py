@@ -14,6 +14,7 @@ from wsim.agents.failures import ModelError
 from wsim.agents.judge import Opinion, decide, opinion
 from wsim.judge.verdict import Finding, Verdict
 from wsim.plan.schema import Plan
+from wsim.plan.schema.cords import Cord
 
 PASSED = Verdict(status="accepted", summary="ok", findings=[Finding(check="CheckEnergy", passed=True, message="ok")])
 FAILED = Verdict(
@@ -53,6 +54,13 @@ def test_an_objection_rejects_what_passed(server: Server, desk: Desk, slide: Pla
     (request,) = server.asked("judge")
     for part in (slide.prompt, "ramp", "accepted: 0 of 1", "The crate stands on its lid."):
         assert part in request
+
+
+def test_cords_are_named_as_objects_are(server: Server, desk: Desk, slide: Plan) -> None:
+    rope = Cord(name="rope", kind="rope", b="crate", anchor_a=(0.0, 0.0, 3.0))
+    server.script["judge"] = [text(said(False, [{**OBJECTION, "object": "rope"}]))]
+    held = ask(desk, slide.model_copy(update={"cords": [rope]}))
+    assert held.objections[0].object == "rope" and len(server.asked("judge")) == 1
 
 
 def test_an_objection_beside_a_failed_check_says_nothing_that_counts(server: Server, desk: Desk, slide: Plan) -> None:

@@ -86,7 +86,7 @@ def opinion(
         ModelError: If no answer is an opinion.
         BudgetError: If tokens or time ran out.
     """
-    names = {item.name for item in plan.objects}
+    names = {each.name for things in (plan.objects, plan.cords) for each in things}
     review = seen or "nobody has looked at pictures yet"
     parts = [
         f"Prompt: {plan.prompt}", "# Plan", "\n".join(plan_lines), "# Checks", "\n".join(verdict_lines),
