@@ -11,7 +11,7 @@ import pytest
 from tests.agents.scripted import Server, text
 from wsim.agents.ask import RETRIES, Desk
 from wsim.agents.failures import ModelError
-from wsim.agents.judge import Opinion, decide, opinion
+from wsim.agents.judge import PLAN_STAYS, Opinion, decide, opinion
 from wsim.judge.verdict import Finding, Verdict
 from wsim.plan.schema import Plan
 from wsim.plan.schema.cords import Cord
@@ -54,6 +54,13 @@ def test_an_objection_rejects_what_passed(server: Server, desk: Desk, slide: Pla
     (request,) = server.asked("judge")
     for part in (slide.prompt, "ramp", "accepted: 0 of 1", "The crate stands on its lid."):
         assert part in request
+
+
+def test_a_judge_is_told_when_the_plan_stays(server: Server, desk: Desk, slide: Plan) -> None:
+    server.script["judge"] = [text(said(False, repair=REPAIR))] * 2
+    for stays in (False, True):
+        opinion(desk, slide, ["ramp"], ["rejected: 1 of 1 findings fail"], "", passed=False, plan_stays=stays)
+    assert [PLAN_STAYS in request for request in server.asked("judge")] == [False, True]
 
 
 def test_cords_are_named_as_objects_are(server: Server, desk: Desk, slide: Plan) -> None:
