@@ -56,6 +56,23 @@ def outsiders(plan: Plan, demand: Demand, objectives: Sequence[Objective], some:
     return ""
 
 
+def is_of(plan: Plan, number: Demand, name: str) -> bool:
+    """Whether a number may be a thing's: "a box of 3 kg", "a 3 kg box", "the box weighs 3 kg" is of no other.
+
+    Args:
+        plan: The plan.
+        number: Of its prompt.
+        name: Of a thing, a joint or a schedule.
+    """
+    read = Words.of(plan.prompt)
+    named = mentions(read, plan)
+    k = number.first
+    of = [names for end, (begin, names) in named.items() if (end == k - 2 and read.said[k - 1].text in ("of", "weighs"))
+          or (begin == number.last + 1 and begin not in read.breaks)]  # fmt: skip
+    meant = of[0] if len(of) == 1 and _are_named_so(read, of[0]) else frozenset()
+    return not meant or name not in {item.name for item in plan.objects} or name in whole_of(plan, meant)
+
+
 def counted_short(plan: Plan, demand: Demand, objectives: Sequence[Objective]) -> str:
     """Why objectives that count things ask for another number than is said of the verb; empty where they do not."""
     read = Words.of(plan.prompt)
