@@ -15,12 +15,13 @@ from wsim.plan.asked.parties import strangers
 from wsim.plan.asked.shown import denies, for_a_while, is_blow_shown, is_idle, shows_not
 from wsim.plan.asked.stated import asks, asks_by_then, ends_by, states
 from wsim.plan.asked.tokens import tokens
-from wsim.plan.asked.vocabulary import CAUSES, GOES, SCHEDULED, SPRINGY, TURNS
+from wsim.plan.asked.vocabulary import CAUSES, GOES, LETS_GO, SCHEDULED, SPRINGY, TURNS
 from wsim.plan.asked.ways import stays_there, wrong_way
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Clause, Objective, Plan
 
+UNTIED = "no clause has it"
 BLOW = "it is a blow, and no objective that is named for it asks for one: collides_with, touches"
 NOT_SHOWN = "it is not to happen, and no objective that is named for it says so: not (...), never_touches, upright"
 IDLE = "what is named for it holds of what stands still, too; ask for more"
@@ -172,7 +173,7 @@ def _gap(demand: Demand, clauses: Sequence[Clause], plan: Plan) -> Gap | None:
         return Gap(demand, next(iter(reasons), why), said=bool(reasons)) if why else None
     if reasons:
         return Gap(demand, reasons[0], said=True)
-    return Gap(demand, _lacks(demand) if clauses else "no clause has it")
+    return Gap(demand, _lacks(demand) if clauses else UNTIED)
 
 
 def _unlike(demand: Demand, tied: Sequence[Clause], plan: Plan) -> str:
@@ -239,6 +240,9 @@ def _shows(clause: Clause, demand: Demand, plan: Plan) -> bool:
     if demand.denied:
         return bool(asked)
     if asked or demand.kind == "state":
+        return True
+    loose = {item.name for item in plan.objects if item.state == "dynamic"}
+    if demand.base in LETS_GO and any(name in loose for name, _ in clause.things):
         return True
     scheduled = {each.name for each in plan.schedules}
     if demand.base in SCHEDULED and any(name in scheduled for name, _ in clause.things):

@@ -13,6 +13,7 @@ from wsim.plan.asked.tokens import Token, Words, text_at
 
 Kind = Literal["verb", "state", "beyond", "number", "relation", "manner", "often"]
 REQUIRED: tuple[Kind, ...] = ("verb", "state", "beyond", "number")
+_VIEWS = words.as_set("wide long close medium single one tracking aerial static establishing camera")  # a "wide shot"
 SHOWN: tuple[Kind, ...] = (*REQUIRED, "manner", "often")  # where nothing answers for it, that is said
 
 
@@ -113,6 +114,8 @@ def _is_verb(said: Sequence[Token], k: int, base: str, opens: bool) -> bool:
     counted = before in words.WORDS or before in words.SCALES or (digits(before) and not joined(said, k - 1))
     beside = before in ("to", "on", "its", "further") or text_at(said, k + 1) == "of"
     apart = word == "close" and text_at(said, k + 1) in ("to", "together", "by", "beside", "behind", "enough")
+    if word == "shot" and (before in _VIEWS or text_at(said, k + 1) in ("", "of", "one")):
+        return False
     if base == "end" and text_at(said, k + 1) not in ("in", "up", "on", "inside"):
         return False
     if word == "left" and text_at(said, k + 1) not in words.DETERMINERS and before not in ("has", "have", "had"):

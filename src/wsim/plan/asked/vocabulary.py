@@ -38,6 +38,7 @@ GOES = as_set(
     slide slip speed throw toss travel walk
     """
 )
+LETS_GO = as_set("release")  # of what is free from the start on, that it is there shows it
 TURNS = as_set("turn spin rotate revolve pivot swivel whirl twirl")
 # What sets a thing going: its start may show it as well, a velocity, a drive.
 CAUSES = as_set(
