@@ -160,8 +160,10 @@ class SolverSPH(SolverBase):
         self.lane_wrench = wp.zeros((self.model.body_count, self.lanes), dtype=wp.spatial_vector)
         self.body_wrench = wp.zeros(self.model.body_count, dtype=wp.spatial_vector)
         self._on_walls = wp.zeros(self.fluid_count if self.wall_count else 0, dtype=wp.vec3)
+        self._in_gaps = wp.zeros(bodies if self.wall_count else 0, dtype=wp.vec3)
         first = self.search.fluid.world_first  # Newton's worlds follow one another
         own = [max(LEAST_LANES, math.isqrt(count)) for count in np.diff(first).tolist()]
+        self._world_first_of_bodies = wp.array(self.search.bodies.world_first, dtype=int)
         self._world_first, self._lanes_of_walls = wp.array(first, dtype=int), wp.array(own, dtype=int)
         self._wall_lanes = wp.zeros((self.world_count, max(own)), dtype=wp.vec3d)
         self._wall_impulse = wp.zeros(self.world_count, dtype=wp.vec3d)
@@ -331,7 +333,7 @@ class SolverSPH(SolverBase):
                 self.programs.extrapolate,
                 dim=solid.count,
                 inputs=[*method, self.viscosity, gravity, fluid, solid.species],
-                outputs=[solid.motion],
+                outputs=[solid.motion, solid.facing],
             )
 
     def _move_fluid(self, state_out: newton.State, dt: float) -> None:
@@ -343,8 +345,8 @@ class SolverSPH(SolverBase):
             launch_shared(
                 self.programs.push,
                 dim=self.body_particle_count,
-                inputs=[*method, fluid, bodies],
-                outputs=[self.body_particle_force],
+                inputs=[*method, fluid, walls, bodies],
+                outputs=[self.body_particle_force, self._in_gaps],
             )
         launch_shared(
             self.programs.momentum,
@@ -356,18 +358,24 @@ class SolverSPH(SolverBase):
             if self.faces.count and self.config.dimensions == 3:
                 at = state_out.particle_q, state_out.particle_qd
                 self.faces.keep_out(self.search.fluid.world, dt, *at, self._on_walls)
-            wp.launch(
-                boundary_kernels.sum_wall_lanes,
-                dim=self._wall_lanes.shape,
-                inputs=[self._on_walls, self._world_first, self._lanes_of_walls],
-                outputs=[self._wall_lanes],
-            )
-            wp.launch(
-                boundary_kernels.add_wall_impulse,
-                dim=self.world_count,
-                inputs=[self._wall_lanes, dt],
-                outputs=[self._wall_impulse],
-            )
+            self._add_to_walls(self._on_walls, self._world_first, dt)
+            if self.body_particle_count:
+                self._add_to_walls(self._in_gaps, self._world_first_of_bodies, dt)
+
+    def _add_to_walls(self, force: wp.array, world_first: wp.array, dt: float) -> None:
+        """Add particles' forces on the walls, in the order of worlds, to the impulse on each world's."""
+        wp.launch(
+            boundary_kernels.sum_wall_lanes,
+            dim=self._wall_lanes.shape,
+            inputs=[force, world_first, self._lanes_of_walls],
+            outputs=[self._wall_lanes],
+        )
+        wp.launch(
+            boundary_kernels.add_wall_impulse,
+            dim=self.world_count,
+            inputs=[self._wall_lanes, dt],
+            outputs=[self._wall_impulse],
+        )
 
     def _return_wrenches(self, state_in: newton.State, state_out: newton.State) -> None:
         if not self.body_particle_count:

@@ -30,7 +30,7 @@ class SortedParticles:
         species: What kernels take.
     """
 
-    def __init__(self, world: np.ndarray, grid: Any, world_count: int, capacity: int) -> None:
+    def __init__(self, world: np.ndarray, grid: Any, world_count: int, capacity: int, solid: bool = True) -> None:
         n = self.count = len(world)
         cells = cells_of(grid) * world_count if n else 0
         self.grid, self.cells_per_world = grid, cells_of(grid)
@@ -49,6 +49,7 @@ class SortedParticles:
         self.species: Any = Species()
         self.species.order, self.species.world = self.order, self.world
         self.species.point, self.species.motion = self.point, self.motion
+        self.species.facing = self.facing = wp.zeros(n if solid else 0, dtype=wp.vec4)
         self.species.cell_start, self.species.near = self.cell_start, self.near
         self.species.entry, self.species.capacity = wp.empty(n * capacity, dtype=int), capacity
         self.species.entry_count = wp.zeros(n if capacity else 0, dtype=wp.vec3i)

@@ -56,7 +56,8 @@ class ParticleSearch:
         self.grid = make_grid(config, *domain, config.support + self.skin, self.cuda, world_count)
         capacity = 0 if self.cuda else _capacity(config, self.grid.support)
         self.fluid, self.walls, self.bodies = (
-            SortedParticles(world, self.grid, world_count, capacity) for world in (fluid_world, wall_world, body_world)
+            SortedParticles(world, self.grid, world_count, capacity, solid)
+            for world, solid in ((fluid_world, False), (wall_world, True), (body_world, True))
         )
         self.moving = [kind for kind in (self.fluid, self.bodies) if kind.count]
         self.solid = [kind for kind in (self.walls, self.bodies) if kind.count]
@@ -132,15 +133,20 @@ class ParticleSearch:
             inputs=[self.grid, walls, bodies],
             outputs=[fluid, overflow],
         )
-        for kind in self.solid:
+        finders = self.programs.find
+        for kind, find, others in (
+            (self.walls, finders.of_walls, [fluid]),
+            (self.bodies, finders.of_bodies, [fluid, walls]),
+        ):
             first, last = kind.world_first[world : world + 2]
-            launch_shared(
-                self.programs.find.of_solid,
-                dim=last - first,
-                first=first,
-                inputs=[self.grid, fluid],
-                outputs=[kind.species, overflow],
-            )
+            if kind.count:
+                launch_shared(
+                    find,
+                    dim=last - first,
+                    first=first,
+                    inputs=[self.grid, *others],
+                    outputs=[kind.species, overflow],
+                )
         for kind, point_at_build in zip(self.moving, self.point_at_build, strict=True):
             first, last = kind.world_first[world : world + 2]
             wp.copy(point_at_build, kind.point, dest_offset=first, src_offset=first, count=last - first)

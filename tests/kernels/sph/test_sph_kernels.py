@@ -94,8 +94,9 @@ def sorted_world(config: ConfigSPH, places, worlds, lists: bool):
             overflow = wp.zeros(1, dtype=int)
             water, walls, bodies = (kind.species for kind in kinds)
             wp.launch(programs.find.of_fluid, kinds[0].count, [0, grid, walls, bodies], [water, overflow])
-            for kind in kinds[1:]:
-                wp.launch(programs.find.of_solid, kind.count, [0, grid, water], [kind.species, overflow])
+            finders = ((programs.find.of_walls, [water]), (programs.find.of_bodies, [water, walls]))
+            for kind, (find, others) in zip(kinds[1:], finders, strict=True):
+                wp.launch(find, kind.count, [0, grid, *others], [kind.species, overflow])
             assert overflow.numpy()[0] == 0
     return grid, kinds, programs
 
@@ -157,7 +158,8 @@ def test_walking_the_cells_gives_the_sums_of_the_lists(periodic):
             assert (given_back != 0.0).any()
             inputs = [*shared, gravity, fluid, walls, bodies, 1e-3]
             wp.launch(programs.continuity, n, inputs, [pressure])
-            for kind in kinds[1:]:
+            finders = ((programs.find.of_walls, [water]), (programs.find.of_bodies, [water, walls]))
+            for kind, (find, others) in zip(kinds[1:], finders, strict=True):
                 inputs = [*shared, viscosity, gravity, fluid, kind.species]
                 wp.launch(programs.extrapolate, kind.count, inputs, [kind.motion])
             inputs = [*shared, viscosity, gravity, fluid, walls, bodies, mass, 1e-3]

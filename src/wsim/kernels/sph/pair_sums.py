@@ -17,7 +17,7 @@ import warp as wp
 
 from wsim.kernels.sph.grid import Grid
 from wsim.kernels.sph.rows import walk
-from wsim.kernels.sph.species import BODIES, FLUID, WALLS, Species
+from wsim.kernels.sph.species import BODIES, DRY, FLUID, WALLS, Species
 
 BLOCK = 128  # threads of a CUDA block; 3 % quicker than 256 for sums over neighbours, on an H200
 
@@ -174,6 +174,28 @@ _MOMENTUM = (
     "return wp::vec_t<3, float>(slope_norm * a0, slope_norm * a1, slope_norm * a2);",
 )
 
+# Of the way to another solid: fluid that lies farther off behind it is none between the two.
+BEYOND = 0.5
+
+_GAP = (
+    """
+    const Record* __restrict__ facings = reinterpret_cast<const Record*>(other.facing.data);
+    const float v0 = v[0], v1 = v[1], v2 = v[2];
+    float a0 = 0.0f, a1 = 0.0f, a2 = 0.0f;
+    """,
+    """
+            const Record f = WSIM_LOAD(facings, j);
+            const float own_way = -(v0 * d0 + v1 * d1 + v2 * d2), its_way = f.x * d0 + f.y * d1 + f.z * d2;
+            const bool between = (own_way < its_way ? own_way : its_way) > -BEYOND * sqrtf(r2);
+            const bool wet = n.w > 0.5f * DRY_PRESSURE;
+            const float force = wet && between ? q.w * (t2 * t) * (p + n.w) : 0.0f;
+            a0 -= force * d0;
+            a1 -= force * d1;
+            a2 -= force * d2;
+    """,
+    "return wp::vec_t<3, float>(slope_norm * a0, slope_norm * a1, slope_norm * a2);",
+)
+
 _MOMENTUM_AT_WALLS = (
     _MOMENTUM[0] + "float share = 0.0f, n0 = 0.0f, n1 = 0.0f, n2 = 0.0f;",
     _MOMENTUM[1]
@@ -227,6 +249,7 @@ class PairSums:
         extrapolation: `Extrapolated`, over fluid.
         force: Force on a particle per volume, over fluid or bodies.
         force_at_walls: `AtWalls`, over walls.
+        force_in_gap: Force on a body's particle per volume, over walls or bodies that are wet, too.
         find: Write the neighbours of one kind behind `start` others, but `itself`; returns how many there are then.
             For lists alone.
         options: What `wp.kernel` is to do with a kernel that sums.
@@ -239,6 +262,7 @@ class PairSums:
     extrapolation: wp.Function
     force: dict[int, wp.Function]
     force_at_walls: wp.Function
+    force_in_gap: dict[int, wp.Function]
     find: wp.Function
     options: dict[str, Any]
 
@@ -270,7 +294,8 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool,
         loop = _RUN.replace("INDEX", "entries[k]" if lists else "k")
         loop = loop.replace("IF_NEAR", "if (r2 < support2)" if branch else "")
         loop = loop.replace("UNROLL", "2" if branch else "1")
-        loop = loop.replace("IMAGES", _images(periodic)).replace("TERM", term)
+        loop = loop.replace("IMAGES", _images(periodic)).replace("TERM", term.replace("DRY_PRESSURE", f"{DRY:e}f"))
+        loop = loop.replace("BEYOND", f"{BEYOND:e}f")
         listed = _LISTED.replace("OTHERS", _OTHERS[kind]).replace("KIND", str(kind)).replace("LOOP", loop)
         search = listed if lists else walk(loop, reach, periodic)
         return _SUM.replace("SEARCH", search).replace("BEFORE", before).replace("AFTER", after)
@@ -307,6 +332,7 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool,
         extrapolation=total(_EXTRAPOLATION, Extrapolated),
         force={kind: total(_MOMENTUM, wp.vec3, kind) for kind in (FLUID, BODIES)},
         force_at_walls=total(_MOMENTUM_AT_WALLS, AtWalls, WALLS),
+        force_in_gap={kind: total(_GAP, wp.vec3, kind) for kind in (WALLS, BODIES)},
         find=find,
         options=options,
     )

@@ -46,5 +46,5 @@ class Programs:
             make_continuity(sums, solids),
             make_extrapolate(sums),
             make_momentum(sums, solids),
-            make_push(sums),
+            make_push(sums, solids),
         )
