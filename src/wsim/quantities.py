@@ -72,3 +72,22 @@ CALLED: dict[What, str] = {
 def said(what: What) -> str:
     """The quantities of a kind of thing, as a message has them."""
     return ", ".join(OF[what])
+
+
+def beyond_the_end(clock: float, last: float, end: float) -> str | None:
+    """What of a schedule no run comes to; None where all of it is within one.
+
+    Args:
+        clock: When its times begin to count, at the earliest [s].
+        last: The last of them [s].
+        end: When the run ends [s].
+    """
+    if clock > end:
+        return (
+            f"its delay, and what it counts from, put its start at {clock:g} s or later, after the end at {end:g} s; "
+            "make the delay shorter, or the run longer"
+        )
+    if clock + last > end:
+        after = "" if clock == 0.0 else f", which count from {clock:g} s or later,"
+        return f"{last:g} s{after} is after the end, at {end:g} s; leave that key out, or make the run longer"
+    return None

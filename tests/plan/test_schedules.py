@@ -64,6 +64,14 @@ BAD = [
     (one(times=[-1, 1]), "schedules.0.times.0"),
     (one(times=[1, 1]), "times [1.0, 1.0] must rise"),
     (one(times=[0, 9]), "schedules.0.times: 9 s is after the end, at 3 s"),
+    (
+        one(after={"touch": ["ball", "ground"], "delay": 3.5}),
+        "schedules.0.after.delay: its delay, and what it counts from, put its start at 3.5 s or later",
+    ),
+    (
+        one(times=[0, 2], after={"touch": ["ball", "ground"], "delay": 1.5}),
+        "schedules.0.times: 2 s, which count from 1.5 s or later, is after the end, at 3 s",
+    ),
     (one(values=[[1, 0, 0]]), "values has 1 entries; give one for each of 2 times"),
     (one(values=[1, 0]), "schedules.0.values.0: a force is [x, y, z]"),
     (one(of="hinge", quantity="velocity", values=[[1, 0, 0], 0]), "schedules.0.values.0: a velocity is one number"),
@@ -95,3 +103,11 @@ def test_a_quantity_has_one_schedule_and_a_name_is_given_once():
         Plan.model_validate(plan(one(), one(name="t")))
     with pytest.raises(ValidationError, match=r"schedules\.0\.name: 'ball' is taken"):
         Plan.model_validate(plan(one(name="ball")))
+
+
+def test_a_clock_that_counts_from_another_schedule_may_begin_after_the_end():
+    first = one(times=[0, 2])
+    late = one(name="t", quantity="torque", times=[0], values=[[0, 0, 1]], after={"end": "s", "delay": 1.5})
+    with pytest.raises(ValidationError, match=r"schedules\.1\.after\.delay: .* start at 3\.5 s or later"):
+        Plan.model_validate(plan(first, late))
+    Plan.model_validate(plan(first, late | {"after": {"end": "s", "delay": 1.0}}))

@@ -137,26 +137,76 @@ def test_a_stage_by_other_hands_is_checked(tmp_path, name, kind, value, says):
     assert any(says in problem for problem in check_stage(scene.save(tmp_path / "stage.usda"), []))
 
 
-def test_a_loop_has_no_efforts_on_the_joint_that_closes_it(tmp_path):
+@pytest.mark.parametrize(
+    ("times", "after", "says"),
+    [
+        ([0, 9], None, "times: 9 s is after the end, at 5 s; leave that key out, or make the run longer"),
+        ([0, 2], Event(touch=("block", "ground"), delay=6), "eventDelay: its delay, and what it counts from, put its"),
+        ([0, 2], Event(end="first", delay=2.5), "times: 2 s, which count from 3.5 s or later, is after the end"),
+        ([0, 2], Event(start="first", delay=2.5), None),
+    ],
+)  # fmt: skip
+def test_what_no_run_comes_to_is_said(tmp_path, times, after, says):
+    scene = world()
+    scene.schedule("first", "bob", "force", times=[0, 1], values=[(1, 0, 0), (0, 0, 0)])
+    scene.schedule("s", "block", "force", times=times, values=[(1, 0, 0), (0, 0, 0)], after=after)
+    problems = check_stage(scene.save(tmp_path / "stage.usda"), [])
+    assert [says] == [says for problem in problems if says in problem] if says else problems == []
+    scene.simulation(duration=10.0)
+    assert check_stage(scene.save(tmp_path / "longer.usda"), []) == []
+
+
+def test_the_joints_of_robots_are_listed():
+    scene = Scene()
+    scene.robot("arm", "desk_arm")
+    for what, says in (
+        ("shoulder", "is not in the scene; known: arm, arm/joints/pan"),
+        ("arm", "of its own; name one"),
+    ):
+        with pytest.raises(SceneError, match=says) as error:
+            scene.schedule("s", what, "velocity", times=[0], values=[1])
+        assert "arm/joints/right_finger" in str(error.value)
+
+
+def loop(*driven):
+    """A four-bar of three bars and four hinges, some with drives."""
     scene = Scene()
     for k, (x, z) in enumerate(((0, 0.5), (0.5, 1), (1, 0.5))):
         scene.box(f"bar_{k}", size=(0.1, 0.1, 0.1), position=(x, 0, z), mass=1)
-    pins = [
-        (None, "bar_0", (0, 0, 0)),
-        ("bar_0", "bar_1", (0, 0, 1)),
-        ("bar_1", "bar_2", (1, 0, 1)),
-        ("bar_2", None, (1, 0, 0)),
-    ]
+    pins = [(None, "bar_0", (0, 0, 0)), ("bar_0", "bar_1", (0, 0, 1)), ("bar_1", "bar_2", (1, 0, 1)),
+            (None, "bar_2", (1, 0, 0))]  # fmt: skip
     for k, (parent, child, anchor) in enumerate(pins):
-        ends = (parent, child) if child else (None, parent)
-        scene.joint_revolute(f"pin_{k}", *ends, anchor=anchor, axis="Y")
-    closing = [j.prim for j in describe(scene.save(tmp_path / "loop.usda")).joints if j.closing]
-    assert len(closing) == 1
-    with pytest.raises(SceneError, match="it closes a loop"):
-        scene.schedule("turn", closing[0], "effort", times=[0], values=[1])
-    scene.schedule(
-        "turn", next(f"pin_{k}" for k in range(4) if not closing[0].endswith(str(k))), "effort", times=[0], values=[1]
-    )
+        drive = Drive(damping=1.0) if k in driven else None
+        scene.joint_revolute(f"pin_{k}", parent, child, anchor=anchor, axis="Y", drive=drive)
+    return scene
+
+
+def closing(scene, path):
+    """The joints that close loops."""
+    return [joint.prim.rsplit("/", 1)[1] for joint in describe(scene.save(path)).joints if joint.closing]
+
+
+def test_another_joint_closes_a_loop_in_place_of_one_that_is_scheduled(tmp_path):
+    scene = loop()
+    (first,) = closing(scene, tmp_path / "plain.usda")
+    scene.schedule("turn", first, "effort", times=[0], values=[1])
+    (second,) = closing(scene, tmp_path / "turned.usda")
+    late = Event(joint=second, above=5.0)
+    scene.schedule("push", "bar_1", "force", times=[0], values=[(1, 0, 0)], after=late)
+    (third,) = closing(scene, tmp_path / "pushed.usda")
+    assert len({first, second, third}) == 3
+    assert check_stage(tmp_path / "pushed.usda", []) == []
+    scene.box("more", size=(0.1,) * 3, position=(5, 0, 1), mass=1)
+    scene.joint_revolute("pin", None, "more", axis="Y")  # joints that come later leave it so
+    assert closing(scene, tmp_path / "more.usda") == [third]
+
+
+def test_where_every_joint_of_a_loop_has_a_coordinate_none_is_free_for_a_schedule(tmp_path):
+    scene = loop(0, 1, 2)
+    assert closing(scene, tmp_path / "plain.usda") == ["pin_3"]
+    with pytest.raises(SceneError, match=r"it closes a loop, .* leave one of them a plain hinge"):
+        scene.schedule("turn", "pin_3", "effort", times=[0], values=[1])
+    assert closing(scene, tmp_path / "after.usda") == ["pin_3"]
 
 
 def test_a_joint_that_may_let_go_has_no_effort_and_tells_no_event(tmp_path):

@@ -51,6 +51,59 @@ def test_a_push_against_friction_and_efforts_on_joints(simulate, worlds):
         assert math.degrees(run.w["wheel"][at(run, t), 2]) == pytest.approx(speed, rel=1e-3)
 
 
+def swung(t, mass, stiffness, damping, speed):
+    """Where a slider is that starts at rest on its drive's position, and follows a velocity beside it [m]."""
+    end, fades = damping * speed / stiffness, damping / (2.0 * mass)
+    rate = math.sqrt(stiffness / mass - fades**2)
+    return end * (1.0 - math.exp(-fades * t) * (math.cos(rate * t) + fades / rate * math.sin(rate * t)))
+
+
+@BOTH
+def test_a_servo_follows_a_velocity_by_its_damping_and_is_pulled_back_by_its_stiffness(simulate, worlds):
+    """m q'' = -k q + c (v - q'), with v stated or from a key on; a bound cuts the sum off, not each of the two."""
+
+    def build(scene):
+        scene.simulation(gravity=(0, 0, 0))
+        for y, name in enumerate(("stated", "late", "bound")):
+            scene.box(name, size=(0.2,) * 3, mass=2.0, position=(0, y, 1))
+            speed, at = 0.0 if name == "late" else 0.5, -0.1 if name == "bound" else 0.0
+            most = 2.0 if name == "bound" else None  # its parts give -4 N and 3 N at the start
+            drive = Drive(position=at, stiffness=40.0, damping=6.0, velocity=speed, max_force=most)
+            rail = scene.joint_prismatic(f"rail_{name}", None, name, axis="X", drive=drive)
+            if name == "late":
+                scene.schedule("go", rail, "velocity", times=[0.1], values=[0.5])
+
+    run = simulate(build, 0.5, worlds)
+    law = 2.0, 40.0, 6.0, 0.5
+    pulled = 2.0, 40.0, 6.0, 0.5 - 4.0 / 6.0
+    for t in (0.2, 0.35, 0.5):
+        assert run.q["stated"][at(run, t), 0] == pytest.approx(swung(t, *law), rel=5e-3)
+        assert run.q["bound"][at(run, t), 0] == pytest.approx(swung(t, *pulled), rel=5e-3)
+        assert run.q["late"][at(run, t), 0] == pytest.approx(swung(t - 0.1, *law), rel=2e-2)
+
+
+@BOTH
+def test_any_hinge_of_a_loop_takes_an_effort(simulate, worlds):
+    """In a parallelogram the coupler goes as fast as the arms' ends: M = (2 I + m L^2) a, I of an arm about its pin."""
+    arm, coupler, length, torque = 1.0, 2.0, 0.5, 0.3
+
+    def build(scene):
+        scene.simulation(gravity=(0, 0, 0))
+        for name, x in (("left", 0.0), ("right", 1.0)):
+            scene.box(name, size=(0.05, 0.05, length), mass=arm, position=(x, 0, length / 2))
+        scene.box("bar", size=(1, 0.05, 0.05), mass=coupler, position=(0.5, 0, length))
+        pins = {"a": (None, "left", 0, 0), "b": ("left", "bar", 0, length), "c": ("bar", "right", 1, length)}
+        for name, (parent, child, x, z) in (pins | {"d": (None, "right", 1, 0)}).items():
+            scene.joint_revolute(name, parent, child, anchor=(x, 0, z), axis="Y")
+        scene.schedule("turn", "d", "effort", times=[0.0], values=[torque])
+
+    run = simulate(build, 0.3, worlds)
+    own = arm * (length**2 + 0.05**2) / 12.0 + arm * length**2 / 4.0
+    expected = torque / (2.0 * own + coupler * length**2) * 0.3
+    assert run.w["right"][-1, 1] == pytest.approx(expected, rel=5e-3)
+    assert run.w["left"][-1, 1] == pytest.approx(expected, rel=5e-3)
+
+
 @BOTH
 def test_a_force_acts_where_it_is_applied_and_as_long_as_its_keys_say(simulate, worlds):
     """Between keys that no step meets, too: the impulse is exact. Off the centre it turns by F r t / I."""

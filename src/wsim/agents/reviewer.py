@@ -103,7 +103,7 @@ def review(desk: Desk, plan: Plan, folder: Path, plan_lines: Sequence[str]) -> R
         BudgetError: If tokens or time ran out.
     """
     sheet, labels = contact_sheet(folder, [camera.name for camera in plan.cameras])
-    names = {item.name for item in plan.objects}
+    names = {each.name for things in (plan.objects, plan.cords) for each in things}
     clauses = [f"{number}. {clause.words}" for number, clause in enumerate(plan.clauses, start=1)]
     request = "\n\n".join(
         [

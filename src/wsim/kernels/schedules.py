@@ -49,23 +49,21 @@ class Targets:
 
 
 @wp.func
-def sum_to(keys: Keys, n: int, s: int, t: wp.float64) -> wp.vec3d:
-    """The integral of a schedule from its first key to a time of its own clock."""
-    total = wp.vec3d()
+def sum_between(keys: Keys, n: int, s: int, start: wp.float64, end: wp.float64) -> wp.vec3d:
+    """The integral of a schedule between two times of its own clock; before its first key it is as stated."""
+    total = keys.base[n, s] * wp.clamp(keys.times[n, s, 0] - start, wp.float64(0.0), end - start)
     for k in range(keys.count[n, s]):
-        first = keys.times[n, s, k]
-        if t <= first:
+        key = keys.times[n, s, k]
+        if end <= key:
             break
-        one = keys.values[n, s, k]
-        if k + 1 == keys.count[n, s]:
-            total += one * (t - first)
-        else:
-            last = keys.times[n, s, k + 1]
-            until = wp.min(t, last)
-            end = one
-            if keys.linear[n, s] != 0:
-                end = one + (keys.values[n, s, k + 1] - one) * ((until - first) / (last - first))
-            total += wp.float64(0.5) * (one + end) * (until - first)
+        since, until, value = wp.max(start, key), wp.float64(end), wp.vec3d(keys.values[n, s, k])
+        if k + 1 < keys.count[n, s]:
+            after = keys.times[n, s, k + 1]
+            until = wp.min(end, after)
+            if keys.linear[n, s] != 0:  # a straight line's mean is its value in the middle
+                share = (wp.float64(0.5) * (since + until) - key) / (after - key)
+                value += (keys.values[n, s, k + 1] - value) * share
+        total += value * wp.max(until - since, wp.float64(0.0))
     return total
 
 
@@ -88,12 +86,10 @@ def find_means(
     if begin[w, s] < wp.float64(0.0):
         return
     start = wp.float64(step[0]) * h - begin[w, s]
-    first = keys.times[n, s, 0]
-    if start + h <= first + HAIR:
+    if start + h <= keys.times[n, s, 0] + HAIR:
         return
     acts[w, s] = 1
-    before = wp.clamp(first - start, wp.float64(0.0), h)
-    mean[w, s] = (sum_to(keys, n, s, start + h) - sum_to(keys, n, s, start) + keys.base[n, s] * before) / h
+    mean[w, s] = sum_between(keys, n, s, start, start + h) / h
 
 
 @wp.kernel(enable_backward=False)

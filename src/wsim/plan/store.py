@@ -52,10 +52,11 @@ def _placed(plan: Plan, path: Path) -> Plan:
 
 
 def _needs_none(item: PlanObject) -> bool:
-    """Whether something has no place of its own: the ground, what is spread over it, a fluid that fills a container."""
+    """Whether the layout has nothing to place: the ground, what is spread over it, fluids but blocks in a container."""
     if item.primitive != "fluid":
         return item.primitive in ("ground", *SPREAD)
-    return not item.size or any(row.predicate == "FREE-SURFACE-AT" for row in item.relations)
+    rows = {row.predicate for row in item.relations}
+    return not item.size or "FREE-SURFACE-AT" in rows or "PLACE-IN" not in rows
 
 
 def read(path: str | Path) -> Plan:

@@ -9,11 +9,13 @@ from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics
 
 from wsim.scene import schema
 from wsim.scene.spanning import WORLD_END, Link, Tree, span
+from wsim.scene.usd_values import targets_of, value_of
 
+COORDINATES = ("position", "velocity", "effort")  # quantities of a joint that are of its coordinate
 _HALF_TURN = {"X": Gf.Quatf(0.0, 0.0, 1.0, 0.0), "Y": Gf.Quatf(0.0, 1.0, 0.0, 0.0), "Z": Gf.Quatf(0.0, 1.0, 0.0, 0.0)}
 
 
-def mark_articulations(stage: Usd.Stage, tops: Sequence[Sdf.Path] = ()) -> Tree:
+def mark_articulations(stage: Usd.Stage, tops: Sequence[Sdf.Path] = (), needing: Sequence[Sdf.Path] = ()) -> Tree:
     """Put one articulation root on each tree of joints, and take joints that close a loop out of the tree.
 
     The root is the joint to the world, or the topmost body. A joint that points towards its root is turned round, its
@@ -23,8 +25,9 @@ def mark_articulations(stage: Usd.Stage, tops: Sequence[Sdf.Path] = ()) -> Tree:
     Args:
         stage: Changed in place.
         tops: Bodies at which trees are to begin that hang on nothing.
+        needing: Joints that need a coordinate beside those of which the stage says so.
     """
-    tree = span(*links_of(stage), tops)
+    tree = span(*links_of(stage, needing), tops)
     for prim in stage.Traverse():
         if prim.HasAPI(UsdPhysics.ArticulationRootAPI):
             prim.RemoveAPI(UsdPhysics.ArticulationRootAPI)
@@ -40,14 +43,14 @@ def mark_articulations(stage: Usd.Stage, tops: Sequence[Sdf.Path] = ()) -> Tree:
     return tree
 
 
-def links_of(stage: Usd.Stage) -> tuple[list[Link], list[Sdf.Path]]:
+def links_of(stage: Usd.Stage, needing: Sequence[Sdf.Path] = ()) -> tuple[list[Link], list[Sdf.Path]]:
     """The joints of a stage as `span` takes them, and the kinematic bodies."""
-    geared = geared_joints(stage)
+    coordinates = geared_joints(stage) | timed_joints(stage) | set(needing)
     links = [
         Link(
             joint.GetPath(),
             *joint_ends(joint),
-            needs_coordinate(joint) or joint.GetPath() in geared,
+            needs_coordinate(joint) or joint.GetPath() in coordinates,
             may_break(joint),
         )
         for joint in joints_of(stage)
@@ -117,6 +120,19 @@ def geared_joints(stage: Usd.Stage) -> set[Sdf.Path]:
                 found.update(prim.GetRelationship(name).GetTargets() if prim.HasRelationship(name) else [])
         elif prim.HasRelationship("newton:mimicJoint"):
             found.update([prim.GetPath(), *prim.GetRelationship("newton:mimicJoint").GetTargets()])
+    return found
+
+
+def timed_joints(stage: Usd.Stage) -> set[Sdf.Path]:
+    """The joints that schedules push or lead, or of which events are."""
+    found: set[Sdf.Path] = set()
+    for prim in stage.Traverse():
+        if not schema.has(prim, schema.SCHEDULE):
+            continue
+        if value_of(prim, "quantity", "") in COORDINATES:
+            found.update(each.GetPath() for each in targets_of(prim, "target") if each.IsA(UsdPhysics.Joint))
+        if value_of(prim, "event", "") == "joint":
+            found.update(each.GetPath() for each in targets_of(prim, "eventOf"))
     return found
 
 

@@ -16,11 +16,10 @@ from typing import NamedTuple
 import numpy as np
 from pxr import Sdf, Usd, UsdPhysics
 
-from wsim.defaults import DURATION
 from wsim.scene.articulation import joint_ends, joints_of, may_break
 from wsim.scene.check_leads import SHORTEST_PARTING, Hold, Way, is_lead, led, pieces, points_of, tops
 from wsim.scene.spanning import WORLD_END
-from wsim.scene.usd_prims import value_of
+from wsim.scene.usd_values import duration_of
 
 Array = np.ndarray
 LOOKS = 64  # within a run
@@ -55,7 +54,7 @@ def overreached(stage: Usd.Stage) -> Iterator[str]:
     if len({hold.lead for holds in held.values() for hold in holds}) < 2:
         return
     joined = _joined(stage)
-    times = np.linspace(0.0, _duration(stage), LOOKS + 1)
+    times = np.linspace(0.0, duration_of(stage), LOOKS + 1)
     ways: dict[Sdf.Path, Way] = {}
     told: set[Sdf.Path] = set()
     for piece, holds in held.items():
@@ -119,11 +118,6 @@ def _message(one: Hold, other: Hold, wrong: str) -> str:
         f"{other.joint.GetPath()}: what joints hold between {names[0]} and {names[1]} {wrong}, neither of which gives "
         "way; lead them otherwise, leave this joint out, or give it a break_force (physics:breakForce)"
     )
-
-
-def _duration(stage: Usd.Stage) -> float:
-    scenes = (prim for prim in stage.Traverse() if prim.IsA(UsdPhysics.Scene))
-    return next((float(value_of(prim, "duration", DURATION)) for prim in scenes), DURATION)
 
 
 def _joined(stage: Usd.Stage) -> dict[Sdf.Path, list[tuple[Sdf.Path, Array]]]:

@@ -24,10 +24,11 @@ from wsim.scene.usd_contacts import read_contacts
 from wsim.scene.usd_mass import mass_of
 from wsim.scene.usd_motion import curve_of, path_of, with_surface_velocity
 from wsim.scene.usd_policies import read_policies
-from wsim.scene.usd_prims import line_of, object_path, owner_of, rigid_frame, turn_of, value_of
+from wsim.scene.usd_prims import object_path, owner_of, rigid_frame, turn_of
 from wsim.scene.usd_reaches import read_joint_paths, read_reaches
 from wsim.scene.usd_sensors import read_sensors
 from wsim.scene.usd_shapes import collides_as_hull, collides_exactly, read_shape, to_quat, to_vec3
+from wsim.scene.usd_values import line_of, value_of
 from wsim.scene.world import (
     Body,
     Container,

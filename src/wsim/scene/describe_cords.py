@@ -12,6 +12,7 @@ from wsim.geometry.ropes import Stop, common_tangent
 from wsim.scene import schema
 from wsim.scene.articulation import WORLD_END, body_above, body_frame
 from wsim.scene.usd_shapes import read_shape, to_vec3
+from wsim.scene.usd_values import line_of, value_of
 from wsim.scene.world import Guide, Rope, Spring
 
 _SIDE = Gf.Vec3d(0.0, 0.0, 1.0)
@@ -31,9 +32,9 @@ def read_spring(prim: Usd.Prim) -> Spring:
     """What a prim with the spring schema states."""
     return Spring(
         path=[_end(prim, "a"), _end(prim, "b")],
-        stiffness=_value(prim, "stiffness", 0.0),
-        damping=_value(prim, "damping", 0.0),
-        rest_length=_value(prim, "restLength", 0.0),
+        stiffness=value_of(prim, "stiffness", 0.0),
+        damping=value_of(prim, "damping", 0.0),
+        rest_length=value_of(prim, "restLength", 0.0),
         **_common(prim),
     )
 
@@ -42,7 +43,7 @@ def read_rope(prim: Usd.Prim) -> Rope:
     """What a prim with the rope schema states."""
     around = prim.GetRelationship("wsim:around")
     targets = around.GetTargets() if around else []
-    sides = list(_value(prim, "sides", None) or [])
+    sides = list(value_of(prim, "sides", None) or [])
     rounds = []
     for k, path in enumerate(targets):
         side = Gf.Vec3d(sides[k]) if k < len(sides) else _SIDE
@@ -50,7 +51,7 @@ def read_rope(prim: Usd.Prim) -> Rope:
         if guide is not None:
             rounds.append(guide)
     path = [_end(prim, "a"), *rounds, _end(prim, "b")]
-    return Rope(path=list(_with_eyes(path, prim.GetStage())), length=_value(prim, "length", 0.0), **_common(prim))
+    return Rope(path=list(_with_eyes(path, prim.GetStage())), length=value_of(prim, "length", 0.0), **_common(prim))
 
 
 def read_pulley(prim: Usd.Prim, side: Gf.Vec3d = _SIDE) -> Guide | None:
@@ -113,21 +114,14 @@ def _end(prim: Usd.Prim, end: str) -> Guide:
     return Guide(
         body=None if body == WORLD_END else str(body),
         owner=str(targets[0]) if targets else None,
-        position=to_vec3(Gf.Vec3d(_value(prim, f"anchor{end.upper()}", Gf.Vec3d(0.0)))),
+        position=to_vec3(Gf.Vec3d(value_of(prim, f"anchor{end.upper()}", Gf.Vec3d(0.0)))),
     )
 
 
 def _common(prim: Usd.Prim) -> dict[str, Any]:
-    line = prim.GetCustomDataByKey("wsim:line")
     return {
         "prim": str(prim.GetPath()),
-        "radius": _value(prim, "radius", 0.01),
-        "color": to_vec3(_value(prim, "color", Gf.Vec3f(0.7))),
-        "line": line if isinstance(line, str) else None,
+        "radius": value_of(prim, "radius", 0.01),
+        "color": to_vec3(value_of(prim, "color", Gf.Vec3f(0.7))),
+        "line": line_of(prim),
     }
-
-
-def _value(prim: Usd.Prim, name: str, default: object) -> Any:
-    attribute = prim.GetAttribute(f"wsim:{name}")
-    value = attribute.Get() if attribute else None
-    return default if value is None else value

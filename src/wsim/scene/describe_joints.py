@@ -11,8 +11,9 @@ from pxr import Gf, Sdf, Usd, UsdPhysics
 from wsim.scene import schema
 from wsim.scene.articulation import dry_friction, joint_ends, may_break
 from wsim.scene.spanning import WORLD_END
-from wsim.scene.usd_prims import line_of, object_path, owner_of, rigid_frame, turn_of, value_of
+from wsim.scene.usd_prims import object_path, owner_of, rigid_frame, turn_of
 from wsim.scene.usd_shapes import to_vec3
+from wsim.scene.usd_values import line_of, value_of
 from wsim.scene.world import Gear, Joint, Motor
 
 MIMIC = "NewtonMimicAPI"

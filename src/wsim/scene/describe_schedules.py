@@ -9,9 +9,10 @@ from pxr import Gf, Usd, UsdPhysics
 
 from wsim import quantities
 from wsim.scene import schema
-from wsim.scene.usd_prims import line_of, rigid_frame, targets_of, value_of
+from wsim.scene.usd_prims import rigid_frame
 from wsim.scene.usd_schedules import kind_of
 from wsim.scene.usd_shapes import to_vec3
+from wsim.scene.usd_values import line_of, targets_of, value_of
 from wsim.scene.world import Event, Schedule
 
 _HINGES = ("position", "velocity")  # what of a hinge is told in degrees

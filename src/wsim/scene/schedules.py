@@ -12,13 +12,14 @@ from wsim import quantities
 from wsim.limits import MAX_DURATION, MAX_KEYS, MAX_POSITION
 from wsim.quantities import Quantity
 from wsim.scene import schema
-from wsim.scene.articulation import is_kinematic, mark_articulations, may_break, needs_coordinate
-from wsim.scene.authoring import CONTACTS, SCHEDULES, Author, Handle, note_line
+from wsim.scene.articulation import COORDINATES, is_kinematic, mark_articulations, may_break, needs_coordinate
+from wsim.scene.authoring import CONTACTS, SCHEDULES, WORLD, Author, Handle, note_line
 from wsim.scene.usd_contacts import ends, owner
 from wsim.scene.usd_schedules import OF_EVENTS, kind_of, lacks
 from wsim.scene.validate import Call, shown, suggestion
 
 UNBREAKABLE = 1e12  # [N]: a joint that lets go is one that breaks, at a load that nothing comes to
+MOST_NAMES = 40  # in a message
 _NAMES = Sdf.ValueTypeNames
 
 
@@ -92,11 +93,15 @@ class Schedules(Author):
         target = self._what_of(call, what)
         kind = kind_of(target)
         found = quantities.OF[kind].get(quantity) if isinstance(quantity, str) else None
+        if found is None and quantity in quantities.JOINT and (joints := _joints_of(target)):
+            call.fail(f"what = {target.GetName()} has joints of its own; name one: {_some(joints)}")
         if found is None:
             call.fail(
                 f"quantity = {shown(quantity)}: what = {target.GetName()} is a {quantities.CALLED[kind]}, which has "
                 f"{quantities.said(kind)}"
             )
+        if quantity in COORDINATES:
+            self._give_coordinate(target)
         if (wrong := lacks(target, quantity)) is not None:
             call.fail(f"{target.GetName()}: {wrong}")
         self._check_unscheduled(call, target, quantity)
@@ -126,6 +131,11 @@ class Schedules(Author):
     def _what_of(self, call: Call, what: object) -> Usd.Prim:
         """What is scheduled: a prim, or the one that states a pair."""
         if not isinstance(what, (tuple, list)):
+            if isinstance(what, str) and what and not self._stage.GetPrimAtPath(_path_of(what)):
+                joints = _joints_of(self._stage.GetPrimAtPath(WORLD))
+                if joints:
+                    told = suggestion(what, [*self._object_names(), *joints])
+                    call.fail(f"what = {shown(what)} is not in the scene; {told}")
             return self._find(call, "what", what)
         if len(what) != 2:
             call.fail(f"what = {shown(what)}: a pair is two objects")
@@ -148,6 +158,12 @@ class Schedules(Author):
                     f'the {quantity} of {target.GetName()} has the schedule "{other.GetName()}" already; put all keys '
                     "into one"
                 )
+
+    def _give_coordinate(self, joint: Usd.Prim) -> None:
+        """Let another joint close a loop in place of one that is scheduled, or that an event is of, if one can."""
+        api = UsdPhysics.Joint(joint)
+        if joint.IsA(UsdPhysics.RevoluteJoint) and api.GetExcludeFromArticulationAttr().Get() and not may_break(api):
+            mark_articulations(self._stage, needing=[joint.GetPath()])
 
     def _let_go(self, call: Call, joint: Usd.Prim) -> None:
         api = UsdPhysics.Joint(joint)
@@ -201,6 +217,7 @@ class Schedules(Author):
             prim = self._find(call, field, of)
             if not any(prim.IsA(each) for each in (UsdPhysics.RevoluteJoint, UsdPhysics.PrismaticJoint)):
                 call.fail(f"{field} = {shown(prim.GetName())} is no hinge and no slider, which alone pass a value")
+            self._give_coordinate(prim)
             return [prim]
         pair = call.listed(field, of, "two objects")
         found = [self._find(call, f"{field}[{k}]", each) for k, each in enumerate(pair)]
@@ -212,6 +229,21 @@ class Schedules(Author):
         if not any(prim.HasAPI(UsdPhysics.RigidBodyAPI) and not is_kinematic(prim) for prim in found):
             call.fail(f"{field}: neither of {shown(of)} is a loose body; they never meet")
         return found
+
+
+def _path_of(what: str) -> str:
+    path = what if what.startswith("/") else f"{WORLD}/{what}"
+    return path if Sdf.Path.IsValidPathString(path) else "/"
+
+
+def _joints_of(prim: Usd.Prim) -> list[str]:
+    """The joints at or below a prim, as a call may name them."""
+    below = Usd.PrimRange(prim) if prim else ()
+    return [str(each.GetPath()).removeprefix(f"{WORLD}/") for each in below if each.IsA(UsdPhysics.Joint)]
+
+
+def _some(names: list[str]) -> str:
+    return ", ".join(names[:MOST_NAMES]) + (f", ... ({len(names)})" if len(names) > MOST_NAMES else "")
 
 
 def _times(call: Call, times: object) -> list[float]:

@@ -11,8 +11,9 @@ from collections.abc import Iterable, Iterator
 from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
 from wsim.scene import schema
-from wsim.scene.usd_prims import rigid_frame, targets_of, value_of
+from wsim.scene.usd_prims import rigid_frame
 from wsim.scene.usd_shapes import to_vec3
+from wsim.scene.usd_values import targets_of, value_of
 from wsim.scene.world import Camera
 
 _WIDEST = 175.0  # [deg]

@@ -12,8 +12,8 @@ from pydantic import ValidationError
 from wsim.assets.policies import PolicySpec
 from wsim.limits import MAX_KEYS, MAX_POSITION
 from wsim.scene import schema
-from wsim.scene.usd_prims import line_of, targets_of, value_of
 from wsim.scene.usd_shapes import to_vec3
+from wsim.scene.usd_values import line_of, targets_of, value_of
 from wsim.scene.world import Policy
 
 _LARGEST = 1e4  # [m/s], [rad/s]

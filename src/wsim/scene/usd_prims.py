@@ -1,8 +1,6 @@
-"""What any prim of a stage says: its frame, the body that it is part of, wsim's own attributes, who made it."""
+"""Where any prim of a stage is, and what it is part of."""
 
 from __future__ import annotations
-
-from typing import Any
 
 from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
@@ -10,26 +8,6 @@ from wsim.scene.usd_shapes import to_quat
 from wsim.scene.world import Quat
 
 _NOW = Usd.TimeCode.Default()
-
-
-def value_of(prim: Usd.Prim, name: str, default: object) -> Any:
-    """A prim's attribute `wsim:name`, or what holds where it has none."""
-    attribute = prim.GetAttribute(f"wsim:{name}")
-    value = attribute.Get() if attribute else None
-    return default if value is None else value
-
-
-def targets_of(prim: Usd.Prim, name: str) -> list[Usd.Prim]:
-    """The prims that a prim's relationship `wsim:name` points to, as far as they are there."""
-    relation = prim.GetRelationship(f"wsim:{name}")
-    found = (prim.GetStage().GetPrimAtPath(path) for path in (relation.GetTargets() if relation else []))
-    return [each for each in found if each]
-
-
-def line_of(prim: Usd.Prim) -> str | None:
-    """The line of the program that made a prim."""
-    line = prim.GetCustomDataByKey("wsim:line")
-    return line if isinstance(line, str) else None
 
 
 def rigid_frame(prim: Usd.Prim) -> Gf.Matrix4d:

@@ -10,8 +10,8 @@ from pxr import Usd, UsdPhysics
 
 from wsim.limits import MAX_DURATION, MAX_KEYS, MAX_POSITION
 from wsim.scene import schema
-from wsim.scene.usd_prims import line_of, targets_of, value_of
 from wsim.scene.usd_shapes import to_quat, to_vec3
+from wsim.scene.usd_values import line_of, targets_of, value_of
 from wsim.scene.world import JointPath, Reach
 
 _FARTHEST_TURN = 36000.0  # [deg]

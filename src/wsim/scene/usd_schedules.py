@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
-from typing import Any
 
 from pxr import Usd, UsdPhysics
 
@@ -12,7 +11,8 @@ from wsim import quantities
 from wsim.limits import MAX_DURATION, MAX_KEYS, MAX_POSITION
 from wsim.quantities import What
 from wsim.scene import schema
-from wsim.scene.articulation import is_kinematic, may_break
+from wsim.scene.articulation import COORDINATES, is_kinematic, may_break
+from wsim.scene.usd_values import duration_of, targets_of, value_of
 
 OF_EVENTS = {"touch": "touch", "body": "place", "joint": "joint", "start": "start", "end": "end"}
 
@@ -30,7 +30,7 @@ def kind_of(prim: Usd.Prim) -> What:
 
 def lacks(target: Usd.Prim, quantity: str) -> str | None:
     """What a thing lacks for a schedule of a quantity of its kind; None where it has all."""
-    if quantity in ("position", "velocity", "effort") and target.IsA(UsdPhysics.Joint):
+    if quantity in COORDINATES and target.IsA(UsdPhysics.Joint):
         return _joint_lacks(target, quantity)
     if quantity in quantities.KINEMATIC and not target.IsA(UsdPhysics.Joint) and schema.has(target, schema.PATH):
         return "it has a path, which says where it goes; leave one of the two out"
@@ -49,7 +49,10 @@ def _joint_lacks(joint: Usd.Prim, quantity: str) -> str | None:
     if UsdPhysics.Joint(joint).GetExcludeFromArticulationAttr().Get():
         if may_break(UsdPhysics.Joint(joint)):
             return f"it may break or let go, and has no {quantity}: schedule a force or a torque of its body"
-        return f"it closes a loop, and has no {quantity}: schedule another joint of the loop"
+        return (
+            f"it closes a loop, and has no {quantity}: the other joints of the loop slide, or have drives, limits, "
+            "friction, gears or schedules; leave one of them a plain hinge, or schedule one of them"
+        )
     drive = UsdPhysics.DriveAPI.Get(joint, "angular" if joint.IsA(UsdPhysics.RevoluteJoint) else "linear")
     if quantity == "effort":
         return None
@@ -69,25 +72,13 @@ def schedule_problems(prims: Iterable[Usd.Prim]) -> Iterator[str]:
     for prim in prims:
         if not schema.has(prim, schema.SCHEDULE):
             continue
-        problems = [*_keys(prim, seen), *_of_event(prim, before)]
+        problems = [*_keys(prim, seen), *_of_event(prim, before)] or [*_beyond_the_end(prim)]
         yield from (f"{prim.GetPath()}.wsim:{problem}" for problem in problems)
         before.append(prim)
 
 
-def _get(prim: Usd.Prim, name: str, default: Any) -> Any:
-    attribute = prim.GetAttribute(f"wsim:{name}")
-    value = attribute.Get() if attribute else None
-    return default if value is None else value
-
-
-def _targets(prim: Usd.Prim, name: str) -> list[Usd.Prim]:
-    relation = prim.GetRelationship(f"wsim:{name}")
-    found = [prim.GetStage().GetPrimAtPath(path) for path in (relation.GetTargets() if relation else [])]
-    return [each for each in found if each]
-
-
 def _keys(prim: Usd.Prim, seen: dict[tuple[str, str], Usd.Prim]) -> Iterator[str]:
-    targets, quantity = _targets(prim, "target"), str(_get(prim, "quantity", ""))
+    targets, quantity = targets_of(prim, "target"), str(value_of(prim, "quantity", ""))
     if len(targets) != 1:
         yield "target: it must be one joint, body, static object or pair"
         return
@@ -102,7 +93,7 @@ def _keys(prim: Usd.Prim, seen: dict[tuple[str, str], Usd.Prim]) -> Iterator[str
         yield "target: a joint that lets go is one that may break; give it a physics:breakForce"
     if (other := seen.setdefault((str(targets[0].GetPath()), quantity), prim)) != prim:
         yield f"target: <{other.GetPath()}> is of the same {quantity}; put all keys into one"
-    times, values = list(_get(prim, "times", ())), list(_get(prim, "values", ()))
+    times, values = list(value_of(prim, "times", ())), list(value_of(prim, "values", ()))
     if not 1 <= len(times) <= MAX_KEYS or (found.count == 0 and len(times) != 1):
         yield f"times: {len(times)} keys; 1 to {MAX_KEYS}, of a release one"
     elif not all(0.0 <= time <= MAX_DURATION for time in times) or any(b <= a for a, b in pairwise(times)):
@@ -111,12 +102,29 @@ def _keys(prim: Usd.Prim, seen: dict[tuple[str, str], Usd.Prim]) -> Iterator[str
         yield f"values: {len(values)} numbers; {found.count} for each of {len(times)} times"
     elif not all(found.low <= value <= found.most for value in values):
         yield f"values: each must be from {found.low:g} to {found.most:g}"
-    if quantity != "force" and _get(prim, "point", None) is not None:
+    if quantity != "force" and value_of(prim, "point", None) is not None:
         yield f"point: it is where a force acts; this is a {quantity}"
 
 
+def _beyond_the_end(prim: Usd.Prim) -> Iterator[str]:
+    """Of a sound schedule: keys of which no run comes to know."""
+    end, clock, last = duration_of(prim.GetStage()), _earliest(prim), value_of(prim, "times", ())[-1]
+    at = "times" if not str(value_of(prim, "event", "")) else "eventDelay" if clock > end else "times"
+    if (wrong := quantities.beyond_the_end(clock, last, end)) is not None:
+        yield f"{at}: {wrong}"
+
+
+def _earliest(prim: Usd.Prim) -> float:
+    """The first moment at which a schedule's clock may begin [s]."""
+    kind, ends = str(value_of(prim, "event", "")), targets_of(prim, "eventOf")
+    came = 0.0
+    if kind in ("start", "end"):
+        came = _earliest(ends[0]) + value_of(ends[0], "times", ())[0 if kind == "start" else -1]
+    return float(came + value_of(prim, "eventDelay", 0.0)) if kind else 0.0
+
+
 def _of_event(prim: Usd.Prim, before: list[Usd.Prim]) -> Iterator[str]:
-    kind, ends = str(_get(prim, "event", "")), _targets(prim, "eventOf")
+    kind, ends = str(value_of(prim, "event", "")), targets_of(prim, "eventOf")
     if not kind:
         return
     if kind not in OF_EVENTS.values():
@@ -125,7 +133,7 @@ def _of_event(prim: Usd.Prim, before: list[Usd.Prim]) -> Iterator[str]:
         yield f"eventOf: names {len(ends)}; a touch has two objects, all else one"
     elif kind == "place" and not ends[0].HasAPI(UsdPhysics.RigidBodyAPI):
         yield f"eventOf: <{ends[0].GetPath()}> is no body"
-    elif kind == "place" and str(_get(prim, "eventAxis", "")) not in ("X", "Y", "Z"):
+    elif kind == "place" and str(value_of(prim, "eventAxis", "")) not in ("X", "Y", "Z"):
         yield "eventAxis: it must be X, Y or Z"
     elif kind == "joint" and not any(ends[0].IsA(k) for k in (UsdPhysics.RevoluteJoint, UsdPhysics.PrismaticJoint)):
         yield f"eventOf: <{ends[0].GetPath()}> is no hinge and no slider"
@@ -136,7 +144,7 @@ def _of_event(prim: Usd.Prim, before: list[Usd.Prim]) -> Iterator[str]:
         )
     elif kind in ("start", "end") and ends[0] not in before:
         yield f"eventOf: <{ends[0].GetPath()}> is no schedule that stands before this one"
-    if not 0.0 <= _get(prim, "eventDelay", 0.0) <= MAX_DURATION:
+    if not 0.0 <= value_of(prim, "eventDelay", 0.0) <= MAX_DURATION:
         yield f"eventDelay: it must be from 0 to {MAX_DURATION:g} s"
-    if not abs(_get(prim, "eventValue", 0.0)) <= max(MAX_POSITION, 36000.0):
+    if not abs(value_of(prim, "eventValue", 0.0)) <= max(MAX_POSITION, 36000.0):
         yield f"eventValue: it must be within {MAX_POSITION:g} m"

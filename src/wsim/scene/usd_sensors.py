@@ -12,8 +12,8 @@ from wsim.limits import MAX_PIXELS, MAX_POSITION, MAX_RATE, MAX_RAYS, MIN_RATE
 from wsim.scene import schema
 from wsim.scene.sensors import is_of_one_freedom
 from wsim.scene.usd_cameras import field_of_view
-from wsim.scene.usd_prims import line_of, targets_of, value_of
 from wsim.scene.usd_shapes import to_quat, to_vec3
+from wsim.scene.usd_values import line_of, targets_of, value_of
 from wsim.scene.world_sensors import (
     Sensor,
     SensorCamera,

@@ -140,6 +140,11 @@ class Motor(_Model):
     saturates: bool = False  # it is meant to end at its greatest effort: it slips, or stalls
     told: bool = True  # False: something else sets its effort, and it may be any
 
+    @property
+    def leads(self) -> bool:
+        """Whether it aims at a position and at a velocity."""
+        return self.stiffness > 0.0 and self.damping > 0.0 and self.velocity != 0.0
+
 
 class Give(_Model):
     """How soft contacts and stops of other engines yield: what meets them at v goes in by up to v time + depth."""

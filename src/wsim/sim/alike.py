@@ -111,7 +111,7 @@ def _kept(value: Any) -> Any:
     if isinstance(value, BaseModel):
         kind = type(value)
         free, stated, positive = (of.get(kind, frozenset()) for of in (FREE, STATED, POSITIVE))
-        found: dict[str, Any] = {}
+        found: dict[str, Any] = {"leads": value.leads} if isinstance(value, Motor) else {}  # an actuator more
         for name in kind.model_fields:
             own = getattr(value, name)
             if name in stated:

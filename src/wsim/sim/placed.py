@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import newton
 import numpy as np
 import warp as wp
 
@@ -38,12 +39,17 @@ def place_joints(builder: Any, world: World) -> None:
 def aim_drives(builder: Any, world: World) -> None:
     """Give drives the targets that are stated.
 
-    For one beyond a stop, as of a preloaded hinge, the importer takes the middle between the stops.
+    For one beyond a stop, as of a preloaded hinge, the importer takes the middle between the stops. Of one with a
+    stiffness it follows the position alone, which is half of its law where it has a velocity, or gets one by time.
     """
     index = {str(label): k for k, label in enumerate(builder.joint_label)}
+    led = {each.target for each in world.schedules if each.quantity == "velocity"}
     for joint in world.joints:
         if joint.drive is not None and joint.prim in index and joint.kind in ("revolute", "prismatic"):
-            builder.joint_target_q[builder.joint_q_start[index[joint.prim]]] = joint.drive.position
+            k = index[joint.prim]
+            builder.joint_target_q[builder.joint_q_start[k]] = joint.drive.position
+            if joint.drive.leads or (joint.prim in led and joint.drive.stiffness > 0.0):
+                builder.joint_target_mode[builder.joint_qd_start[k]] = int(newton.JointTargetMode.POSITION_VELOCITY)
 
 
 def coordinate(joint: Joint, bodies: dict[str, Body]) -> float:

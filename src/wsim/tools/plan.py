@@ -140,11 +140,12 @@ def _objects(plan: Plan, name: str) -> list[str]:
             number(weight.mass), numbers(item.size, " x "), numbers(pose.position) if pose else "",
             numbers(pose.rotation_deg) if pose and any(pose.rotation_deg) else "",
             numbers(item.velocity) if any(item.velocity) else "",
+            numbers(item.surface_velocity) if item.surface_velocity else "",
             *_surface(item),
         ])  # fmt: skip
     head = (
         "object", "what", "state", "material", "kg/m^3", "kg", "size [m]", "place [m]", "turned [deg]", "m/s",
-        "friction", "restitution", "rolling",
+        "surface m/s", "friction", "restitution", "rolling",
     )  # fmt: skip
     return table(head, rows) if rows else []
 

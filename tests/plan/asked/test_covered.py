@@ -179,3 +179,21 @@ def test_a_spring_is_compressed_as_no_body_is(spring: bool, by: list[int], silen
     prompt = "A ball flies half a metre and the coil compresses."
     made = plan(clauses, prompt, **({"cords": [cord]} if spring else {}))
     assert [gap.demand.text for gap in missing(made)] == silent
+
+
+@pytest.mark.parametrize(("pan", "silent"), [(True, []), (False, ["lands"])])
+def test_what_lands_on_a_scale_lands_on_its_pan(pan: bool, silent: list[str]) -> None:
+    """It is said of the scale, and a slider ties the pan to that."""
+    box = {"primitive": "box", "role": "mechanism", "state": "dynamic", "material": GROUND["material"]}
+    parts = [
+        {"name": "scale_base", **box, "size": [0.4, 0.4, 0.2], "position": [0, 0, 0.1], "state": "static"},
+        {"name": "pan", **box, "size": [0.4, 0.4, 0.02], "position": [0, 0, 0.5]},
+    ]
+    guide = {"name": "guide", "kind": "slider", "child": "pan", "parent": "scale_base", "axis": "Z"}
+    asked = {"kind": "collides_with", "object": "ball", "ref": "pan"}
+    clauses = [{"words": "A ball lands on a scale", "by": [0]}]
+    made = plan(
+        clauses, "A ball lands on a scale.", objects=[GROUND, BALL, *parts], objectives=[asked],
+        joints=[guide] if pan else None,
+    )  # fmt: skip
+    assert [gap.demand.text for gap in missing(made)] == silent

@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wsim.plan.asked.demands import demands, tokens
+from wsim.plan.asked.demands import demands
+from wsim.plan.asked.tokens import tokens
 
 
 def found(prompt: str, *kinds: str) -> list[str]:
@@ -68,6 +69,60 @@ def test_edges_share_the_last_ones_unit() -> None:
 def test_what_counts_nothing_is_no_number() -> None:
     for prompt in ("One of them, the other one.", "The first ball, the 2nd, a Go2 and a G1.", "A single one-way gate."):
         assert found(prompt, "number") == []
+
+
+DENIED = {
+    "The tower does not fall.": ["fall"], "It never touches the wall.": ["touches"], "It must not tip or fall.":
+    ["tip", "fall"], "It hits the box without touching the skittle.": ["touching"], "No water spills.": ["spills"],
+    "None of the blocks falls, and nothing moves.": ["falls", "moves"], "The post keeps it from falling.": ["falling"],
+    "It can't hit the crate.": ["hit"], "It does not fall and slides.": ["fall"], "It isn't ever hit.": ["hit"],
+    "A floor with no friction: the block slides.": [], "Not only does it fall but it rolls.": [],
+    "There is no wall and the ball falls.": [], "Without a wall it falls.": [], "It falls; nothing moves it on.":
+    ["moves"],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("prompt", DENIED)
+def test_what_is_not_to_happen_is_told_from_what_is(prompt: str) -> None:
+    assert [each.text for each in demands(prompt) if each.denied] == DENIED[prompt]
+
+
+NAMES = {
+    "Ball two hits ball one and box 1 lies two metres away.": ["two metres"],
+    "Cart number two, a type 3 crate and a model 500 car wait.": [], "Beside the wall, two balls roll.": ["two"],
+    "A tower three blocks high stands.": ["three"], "A friction 1 and a gravity 10.": ["1", "10"],
+    "The first two float.": ["two"], "All three of them fall.": ["three"], "A Boeing 747 lands.": [],
+    "Drop the ball three times.": ["three"], "The link 2 falls.": [], "A ball waits: two come.": ["two"],
+    "Ball one and a half metres away ball two waits.": ["one and a half metres"],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("prompt", NAMES)
+def test_a_number_in_a_name_is_no_count(prompt: str) -> None:
+    assert found(prompt, "number") == NAMES[prompt]
+
+
+@pytest.mark.parametrize(
+    ("prompt", "bound"),
+    [
+        ("Within a second it falls.", 1.0), ("It falls in under a second and a half.", 1.5),
+        ("It falls no later than half a second after that.", 0.5), ("In less than 200 ms it falls.", 0.2),
+        ("It falls within a quarter of a second.", 0.25), ("After 2 s it falls.", None),
+        ("It falls for a second.", None),
+        ("It touches it for less than 2 s.", None), ("It falls into a second box.", None),
+    ],
+)  # fmt: skip
+def test_times_by_which_something_happens(prompt: str, bound: float | None) -> None:
+    assert [each.value for each in demands(prompt) if each.bound] == ([] if bound is None else [pytest.approx(bound)])
+
+
+def test_how_often() -> None:
+    assert found("It bounces exactly once, then only twice, and again.", "often") == [
+        "exactly once", "only twice", "again"
+    ]  # fmt: skip
+    assert found("Once it has fallen it lies; again and again.", "often") == []
+    often = [each.text for each in demands("Three times it falls, twice as far as twice the box.") if each.often]
+    assert often == ["Three"]
 
 
 def test_manners() -> None:

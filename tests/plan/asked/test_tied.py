@@ -45,6 +45,14 @@ def test_what_nothing_shows_is_said_and_not_passed_over() -> None:
     assert not_checked(tied(asked)) == [f"'25 degrees': {UNFOUND}", f"'hits': {UNASKED}"]
 
 
+def test_what_is_denied_or_has_a_time_is_not_tied_to_what_shows_something_else() -> None:
+    made = plan("A steel ball rolls down a ramp of 20 degrees and hits a wall.")
+    prompt = "A steel ball rolls down a ramp of 20 degrees and within a second does not hit a wall."
+    asked = made.model_copy(update={"prompt": prompt, "clauses": []})
+    assert not_checked(tied(asked)) == [f"'a second': {UNFOUND}", f"'hit': {UNASKED}"]
+    assert missing(tied(asked)) == []
+
+
 def test_a_count_of_things_is_not_how_often() -> None:
     made = plan("Three rubber balls are dropped from 1 m.")
     asked = made.model_copy(update={"prompt": "Three rubber balls are dropped from 1 m, three times."})

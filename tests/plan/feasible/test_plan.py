@@ -105,6 +105,43 @@ WRONG: dict[str, tuple[dict[str, Any], str]] = {
         {"objects": [A, TABLE], "objectives": [RESTS, {"kind": "moves", "object": "table"}]},
         r'objectives\.1: moves of table, which is static and never moves; make it "dynamic"',
     ),
+    "a kinematic thing that nothing moves goes": (
+        {"objects": [A, box("gate", [3, 0, 1], state="kinematic")],
+         "objectives": [RESTS, formula("crosses(gate, z, 2 m)", "gate")]},
+        r"crosses of gate, which is kinematic and has no velocity and no schedule: it never moves; give it one",
+    ),
+    "what a fixed joint holds falls": (
+        {"objects": [A, box("sign", [3, 0, 1])], "objectives": [RESTS, formula("drops(sign)", "sign")],
+         "joints": [{"name": "nail", "kind": "fixed", "child": "sign"}]},
+        r"drops of sign, which nail holds to what stands still: it never moves; schedule its release, or leave it out",
+    ),
+    "a drawer beyond its stop": (
+        {"objects": [A, box("drawer", [3, 0, 1])],
+         "objectives": [RESTS, formula("gone_between(drawer, x, 0.5 m, 0.6 m)", "drawer")],
+         "joints": [{"name": "rail", "kind": "slider", "child": "drawer", "axis": "X", "limits": [0, 0.4]}]},
+        r"gone_between x 0\.5 to 0\.6 m of drawer, and rail's limits are 0 to 0\.4; widen the joint's limits",
+    ),
+    "a flap that may not turn so far topples": (
+        {"objects": [A, box("flap", [3, 0, 1])],
+         "objectives": [RESTS, {"kind": "topples", "object": "flap"}],
+         "joints": [{"name": "pin", "kind": "hinge", "child": "flap", "axis": "Y", "limits": [-30, 30]}]},
+        r"topples of flap, which pin lets turn by -30 to 30 deg; widen",
+    ),
+    "a flap leans the other way": (
+        {"objects": [A, box("flap", [3, 0, 1])],
+         "objectives": [RESTS, formula("tilt_between(flap, y, 20 deg, 40 deg)", "flap")],
+         "joints": [{"name": "pin", "kind": "hinge", "child": "flap", "axis": "X", "limits": [0, 60]}]},
+        r"tilt_between y 20 to 40 deg of flap, and pin's limits are -60 to 0",
+    ),
+    "a window before a clock that waits for another": (
+        {"objects": [A, box("gate", [3, 0, 1], state="kinematic")],
+         "objectives": [RESTS, formula("eventually[0, 1.5] (crosses(gate, z, 1.2 m))", "gate")],
+         "schedules": [
+             {"name": "push", "of": "box", "quantity": "force", "times": [0, 1], "values": [[1, 0, 0], [0, 0, 0]]},
+             {"name": "lift", "of": "gate", "quantity": "velocity", "times": [0], "values": [[0, 0, 1]],
+              "after": {"end": "push", "delay": 0.6}}]},
+        r"crosses of gate by 1\.5 s, which does not move before 1\.6 s \(schedule lift\)",
+    ),
     "stays where it does not start": (
         {"objects": [A, box("tower", [2, 0, 0.5], (0.2, 0.2, 1))],
          "objectives": [{"kind": "stays_on", "object": "box", "ref": "tower"}]},
@@ -130,6 +167,35 @@ RIGHT: dict[str, dict[str, Any]] = {
     "a door that turns": {
         "objects": [POST, DOOR], "joints": [HINGE],
         "objectives": [OPENS],
+    },
+    "a gate that control lifts": {
+        "objects": [A, box("gate", [3, 0, 1], state="kinematic")],
+        "objectives": [RESTS, formula("crosses(gate, z, 2 m)", "gate")],
+        "steps": [{"title": "lift", "shows": "control lifts the gate"}],
+    },
+    "a sign that is let go": {
+        "objects": [A, box("sign", [3, 0, 1])], "objectives": [RESTS, formula("drops(sign)", "sign")],
+        "joints": [{"name": "nail", "kind": "fixed", "child": "sign"}],
+        "schedules": [{"name": "fall", "of": "nail", "quantity": "release", "times": [1]}],
+    },
+    "what is fixed does not move": {
+        "objects": [A, TABLE],
+        "objectives": [RESTS, formula("not (crosses(table, x, 2 m))", "table"),
+                       formula("always (speed_between(table, 0 m/s, 1 m/s))", "table"),
+                       formula("moves(box, 1 m) or moves(table, 1 m)")],
+    },
+    "a flap within its limits": {
+        "objects": [A, box("flap", [3, 0, 1])],
+        "objectives": [RESTS, formula("tilt_between(flap, y, -40 deg, -20 deg)", "flap"),
+                       formula("turned_between(flap, x, 59 deg, 61 deg)", "flap")],
+        "joints": [{"name": "pin", "kind": "hinge", "child": "flap", "axis": "X", "limits": [0, 60]}],
+    },
+    "a window that reaches the schedule": {
+        "objects": [A, box("gate", [3, 0, 1], state="kinematic")],
+        "objectives": [RESTS, formula("eventually[0, 1.5] (crosses(gate, z, 1.05 m))", "gate"),
+                       formula("eventually[0, 1] (eventually[0, 1] (crosses(gate, z, 1.05 m)))", "gate")],
+        "schedules": [{"name": "lift", "of": "gate", "quantity": "velocity", "times": [0, 2], "linear": True,
+                       "values": [[0, 0, 0], [0, 0, 1]], "after": {"touch": ["box", "ground"], "delay": 0.5}}],
     },
     "a bob on a thread": {
         "objects": [box("box", [0, 0, 1])],

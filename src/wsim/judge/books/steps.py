@@ -3,6 +3,10 @@
 A step of first order takes q' by M(q)^-1 and moves q after: the momentum A(q) q' of what hangs together is then off by
 dt^2 (2 A'(q', q'') + A'' q' / 2), which of a body that turns at w, its mass at l from its joint, is m l dt (2 w w' +
 w^3 dt / 2) a step. Nothing pushes, and no force of the world explains it.
+
+A joint that is a constraint, as one that closes a loop, may break or lets go, gives its impulse where its anchor is as
+a step begins. Between frames the arm is half of a step's turn further on, w dt / 2: a torque of l F w dt / 2 beside
+the anchor, of a force F, on a body that turns at w.
 """
 
 from __future__ import annotations
@@ -24,11 +28,14 @@ if TYPE_CHECKING:
 def step_error(evidence: Evidence) -> Floats:
     """How much of each body's force over its mass may be due to steps, (T - 1, B) [m/s^2]."""
     motion, found = evidence.motion, np.zeros((len(evidence.motion.h), len(evidence.motion.mass)))
-    if evidence.world.stepped != "joints":
+    if evidence.world.stepped == "neither":
         return found
     rate, change = np.linalg.norm(motion.w, axis=2), np.linalg.norm(np.diff(motion.w, axis=0), axis=2)
     fastest, h = np.maximum(rate[1:], rate[:-1]), motion.h
     dt, off = np.minimum(motion.dt, h), np.zeros_like(found)
+    found += _of_constraints(evidence, fastest, dt)
+    if evidence.world.stepped != "joints":
+        return found
     for i, links in enumerate(_chains(evidence)):
         if links:
             length = np.max([np.linalg.norm(motion.com[:, i] - place, axis=1) for _, place in links], axis=0)
@@ -38,7 +45,27 @@ def step_error(evidence: Evidence) -> Floats:
     for unit in np.unique(motion.unit[motion.jointed]):
         rows_of = np.flatnonzero(motion.unit == unit)
         mass = motion.mass[rows_of]  # it ends in any of the bodies, the more the heavier they are
-        found[:, rows_of] = (off[:, rows_of] @ mass)[:, None] * mass / np.sum(mass**2)
+        found[:, rows_of] += (off[:, rows_of] @ mass)[:, None] * mass / np.sum(mass**2)
+    return found
+
+
+def _of_constraints(evidence: Evidence, fastest: Floats, dt: Floats) -> Floats:
+    """What the arms of joints that are constraints miss, over masses and radii, (T - 1, B) [m/s^2]."""
+    motion, found = evidence.motion, np.zeros_like(fastest)
+    passed = np.linalg.norm(motion.acceleration - motion.gravity, axis=2) * motion.mass
+    row = {body.prim: i for i, body in enumerate(evidence.world.bodies)}
+    for joint in evidence.world.joints:
+        if not joint.closing or not joint.child_anchor:
+            continue
+        anchors = anchors_of(evidence, joint)
+        for prim in (joint.parent, joint.child):
+            i = row.get(prim or "")
+            if i is None or motion.kinematic[i]:
+                continue
+            length = np.linalg.norm(motion.com[:, i] - anchors.below, axis=1).max()
+            share = length / max(length, float(motion.radius[i]))
+            force = passed[:, motion.unit == motion.unit[i]].sum(axis=1)  # all that hangs together may pass it on
+            found[:, i] += 0.5 * dt * fastest[:, i] * share * force / motion.mass[i]
     return found
 
 

@@ -9,20 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.checks.check import Check
+from wsim.judge.checks.planned_schedules import Unlike, differing, unlike
 from wsim.judge.verdict import RepairTarget
 from wsim.scene.contact import within
-from wsim.scene.world import Event, JointPath, Reach, Schedule
+from wsim.scene.world import JointPath, Reach, Schedule
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
-    from wsim.plan.schema import Actuation, EventPlan, Plan, SchedulePlan
-
-    Floats = NDArray[np.float64]
+    from wsim.plan.schema import Actuation, Plan, SchedulePlan
 
 _TIMED = ("reach", "follow", "schedule")  # kinds of actuation
 
@@ -57,9 +52,9 @@ class CheckPlanControl(Check):
         if idle:
             target = RepairTarget(kind="controller", prim=evidence.prim(idle[0]), parameter="policy", direction="add")
             return [self.failed(f"The plan lets a policy walk {idle[0]}, and none does", target=target)]
-        for unlike in (self._by_time(evidence, plan), self._scheduled(evidence, plan)):
-            if unlike is not None:
-                return [unlike]
+        for wrong in (self._by_time(evidence, plan), self._scheduled(evidence, plan)):
+            if wrong is not None:
+                return [wrong]
         if bool(asked) == controlled:
             return [self.passed(f"The plan asks for control: {asked[0]}")] if asked else []
         message = (
@@ -86,8 +81,11 @@ class CheckPlanControl(Check):
                 if found is None:
                     prim = evidence.prim(item.name)
                     target = RepairTarget(kind="controller", prim=prim, parameter=each.kind, direction="add")
+                    other = next(filter(None, (_otherwise(evidence, item.name, each, said) for said in left)), None)
                     said = f"The plan has a {each.kind} of {item.name} that the stage has not"
-                    return self.failed(said, target=target)
+                    if other is None:
+                        return self.failed(said, target=target)
+                    return self.failed(f"{said}: it has {other.says}", target=target, **other.numbers)
                 left.remove(found)
         if not left:
             return None
@@ -100,21 +98,18 @@ class CheckPlanControl(Check):
     def _scheduled(self, evidence: Evidence, plan: Plan) -> Finding | None:
         """The first of the plan's schedules that the stage lacks, has otherwise, or has beside them."""
         left = list(evidence.world.schedules)
-        for each in plan.schedules:
-            found = next(
-                (said for said in left if said.quantity == each.quantity and _is_of(evidence, each, said)), None
-            )
+        own = [(each, next((said for said in left if _is_of(evidence, each, said)), None)) for each in plan.schedules]
+        called = {said.prim: each.name for each, said in own if said is not None}
+        for each, found in own:
             if found is None:
                 target = RepairTarget(kind="program", parameter="scene.schedule", direction="add", text=each.name)
                 said = f"The plan's schedule {each.name}, the {each.quantity} of {_of(each)}, is not in the stage"
                 return self.failed(said, target=target)
             left.remove(found)
-            if not evidence.varied and (unlike := _unlike(evidence, each, found)) is not None:
+            if not evidence.varied and (other := unlike(evidence, each, found, called)) is not None:
                 target = RepairTarget(kind="program", parameter="scene.schedule", direction="change", text=each.name)
-                said = (
-                    f"The schedule of the {each.quantity} of {_of(each)} has other {unlike} than the plan's {each.name}"
-                )
-                return self.failed(said, line=found.line, target=target)
+                said = f"The schedule {each.name} of the {each.quantity} of {_of(each)} has {other.says}"
+                return self.failed(said, line=found.line, target=target, **other.numbers)
         if not left:
             return None
         said = f"The stage schedules the {left[0].quantity} of {left[0].target}, and the plan does not"
@@ -132,67 +127,40 @@ def _by_schedule(plan: Plan, name: str, joint: str | None) -> bool:
 
 
 def _is_of(evidence: Evidence, planned: SchedulePlan, said: Schedule) -> bool:
+    """Whether a schedule of the stage is of the same quantity of the same thing, whatever it is called."""
+    if said.quantity != planned.quantity:
+        return False
     if isinstance(planned.of, str):
         return said.target == evidence.prim(planned.of)
     pair = next((pair for pair in evidence.world.contacts if pair.prim == said.target), None)
     return pair is not None and {pair.first, pair.second} == {evidence.prim(name) for name in planned.of}
 
 
-def _unlike(evidence: Evidence, planned: SchedulePlan, said: Schedule) -> str | None:
-    """In what a schedule of the stage differs from the plan's; None where it does not."""
-    hinge = any(joint.prim == said.target and joint.kind == "revolute" for joint in evidence.world.joints)
-    turns = planned.quantity == "angular_velocity" or (hinge and planned.quantity in ("position", "velocity"))
-    unit, linear = (math.radians(1.0) if turns else 1.0), planned.linear
-    if linear is None:
-        linear = planned.quantity == "position"
-    wanted = [np.atleast_1d(value) * unit for value in planned.values]
-    values = [np.atleast_1d(value) for value in said.values]
-    if planned.quantity == "surface_velocity":  # the stage's are in the world's axes, whatever the object's are
-        wanted, values = ([np.sqrt(np.sum(value**2, keepdims=True)) for value in each] for each in (wanted, values))
-    if not _alike(said.times, planned.times):
-        return "times"
-    if said.quantity != "release" and not _alike(np.ravel(values), np.ravel(wanted)):
-        return "values"
-    if said.linear != linear:
-        return "ways from key to key (linear)"
-    if (said.point is None) != (planned.point is None) or (
-        said.point is not None and not _alike(said.point, planned.point or ())
-    ):
-        return "points"
-    return None if _same_event(evidence, planned.after, said.after) else "events (after)"
-
-
-def _same_event(evidence: Evidence, planned: EventPlan | None, said: Event | None) -> bool:
-    if planned is None or said is None:
-        return planned is said
-    kinds = {"touch": "touch", "body": "place", "joint": "joint", "start": "start", "end": "end"}
-    kind = planned.kind
-    given = getattr(planned, kind)
-    names = list(given) if isinstance(given, tuple) else [given]
-    ends = [end.rsplit("/", 1)[-1] for end in (said.first, said.second) if end]
-    hinge = any(joint.prim == said.first and joint.kind == "revolute" for joint in evidence.world.joints)
-    value = planned.above if planned.above is not None else (planned.below or 0.0)
-    value *= math.radians(1.0) if hinge else 1.0
-    same = kinds[kind] == said.kind and sorted(names) == sorted(ends) and _alike([said.delay], [planned.delay or 0.0])
-    above = planned.below is None or kind not in ("body", "joint")
-    return same and _alike([said.value], [value]) and said.axis == planned.axis and said.above == above
-
-
 def _says(evidence: Evidence, name: str, actuation: Actuation, said: JointPath | Reach) -> bool:
     """Whether the stage says by time just what the plan lets a robot's link or joint do."""
-    robot, times = evidence.prim(name), list(actuation.times)
+    return _is_same(evidence, name, actuation, said) and _otherwise(evidence, name, actuation, said) is None
+
+
+def _is_same(evidence: Evidence, name: str, actuation: Actuation, said: JointPath | Reach) -> bool:
+    """Whether the stage says anything of that link or joint, in that way."""
+    robot = evidence.prim(name)
+    if isinstance(said, JointPath):
+        return actuation.kind == "schedule" and said.prim == f"{robot}/joints/{actuation.joint}"
+    own = actuation.kind in ("reach", "follow") and said.link == f"{robot}/{actuation.link}"
+    return own and said.straight == (actuation.kind == "follow")
+
+
+def _otherwise(evidence: Evidence, name: str, actuation: Actuation, said: JointPath | Reach) -> Unlike | None:
+    """In what the stage says otherwise what the plan lets the same link or joint do; None where it does not."""
+    if not _is_same(evidence, name, actuation, said):
+        return None
+    times = differing("times", said.times, actuation.times, "s")
     if isinstance(said, JointPath):
         slides = any(each.prim == said.prim and each.kind == "prismatic" for each in evidence.world.joints)
-        unit = 1.0 if slides else math.radians(1.0)
-        own = actuation.kind == "schedule" and said.prim == f"{robot}/joints/{actuation.joint}"
-        return own and _alike(said.times, times) and _alike(said.positions, [unit * each for each in actuation.target])
-    own = actuation.kind in ("reach", "follow") and said.link == f"{robot}/{actuation.link}"
-    own &= said.straight == (actuation.kind == "follow") and _alike(said.point, actuation.point or (0.0, 0.0, 0.0))
-    return own and _alike(said.times, times) and _alike(np.ravel(said.positions), np.ravel(actuation.path))
-
-
-def _alike(one: Sequence[float] | Floats, other: Sequence[float] | Floats) -> bool:
-    return len(one) == len(other) and bool(np.allclose(one, other, rtol=1e-4, atol=1e-4))
+        unit, size = ("m", 1.0) if slides else ("deg", math.radians(1.0))
+        return times or differing("positions", [each / size for each in said.positions], actuation.target, unit)
+    point = differing("point", said.point, actuation.point or (0.0, 0.0, 0.0), "m")
+    return times or point or differing("way", np.ravel(said.positions), np.ravel(actuation.path), "m")
 
 
 def _by_policy(evidence: Evidence, name: str, joint: str | None) -> bool:

@@ -7,15 +7,23 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from wsim.plan.asked.demands import REQUIRED, Demand, demands, tokens
-from wsim.plan.asked.shown import is_blow_shown
-from wsim.plan.asked.stated import asks, states
+from wsim.plan.asked.demands import REQUIRED, SHOWN, Demand, demands
+from wsim.plan.asked.often import asks_again, asks_exactly, asks_often
+from wsim.plan.asked.parties import strangers
+from wsim.plan.asked.shown import is_blow_shown, shows_not
+from wsim.plan.asked.stated import asks, asks_by_then, ends_by, states
+from wsim.plan.asked.tokens import tokens
 from wsim.plan.asked.vocabulary import CAUSES, SCHEDULED, SPRINGY
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Clause, Objective, Plan
 
 BLOW = "it is a blow, and no objective that is named for it asks for one: collides_with, touches"
+NOT_SHOWN = "it is not to happen, and no objective that is named for it says so: not (...), never_touches, upright"
+OFTEN = "no objective that is named for it has as many events: a then b then a"
+EXACTLY = "nothing asks that it comes no more often: not (a then b then a)"
+AGAIN = "no objective that is named for it asks for what comes after something else: a then b, finally"
+BY_THEN = "no objective that is named for it ends by then: eventually[0, {:g}] (...)"
 STARTS = ("velocity", "spin", "surface_velocity", "drive", "actuation")  # what sets a thing going
 
 
@@ -49,8 +57,9 @@ def gaps(plan: Plan) -> list[Gap]:
     placed = spans(plan)
     found = []
     for demand in demands(plan.prompt):
-        gap = _gap(demand, [clause for clause, where in placed if _within(demand, where)], plan)
-        if gap is not None and (demand.kind in REQUIRED or demand.kind == "manner"):
+        here = [clause for clause, where in placed if _within(demand, where)]
+        gap = _gap(demand, here, plan) if demand.kind in SHOWN else None
+        if gap is not None:
             found.append(gap)
     return found
 
@@ -138,9 +147,8 @@ def _gap(demand: Demand, clauses: Sequence[Clause], plan: Plan) -> Gap | None:
     """What is missing of a demand, given the clauses whose words hold it."""
     tied = [clause for clause in clauses if clause.by]
     reasons = [clause.unchecked for clause in clauses if clause.unchecked]
-    if demand.kind == "beyond" and not (
-        demand.base in SPRINGY and tied and _has_spring(plan)
-    ):  # whatever it is tied to shows something else
+    springs = demand.base in SPRINGY and tied and _has_spring(plan)
+    if demand.kind == "beyond" and not demand.denied and not springs:  # whatever it is tied to shows something else
         if plan.stands_in_for is not None or reasons:
             return Gap(demand, next(iter(reasons), "the world stands in for it"), said=True)
         return Gap(demand, f"wsim has rigid bodies and water, and nothing in it can {demand.base}")
@@ -148,12 +156,22 @@ def _gap(demand: Demand, clauses: Sequence[Clause], plan: Plan) -> Gap | None:
         alone = [clause for clause in tied if not _more_than(demand, clause)]
         return None if alone else Gap(demand, next(iter(reasons), "nothing measures it"), said=bool(reasons))
     if any(_shows(clause, demand, plan) for clause in tied):
-        return None if is_blow_shown(demand.base, _asked(tied, plan)) else Gap(demand, BLOW)
+        why = _unlike(demand, _asked(tied, plan), plan)
+        return Gap(demand, next(iter(reasons), why), said=bool(reasons)) if why else None
     if reasons:
         return Gap(demand, reasons[0], said=True)
-    if not clauses:
-        return Gap(demand, "no clause has it")
-    return Gap(demand, _lacks(demand))
+    return Gap(demand, _lacks(demand) if clauses else "no clause has it")
+
+
+def _unlike(demand: Demand, asked: Sequence[Objective], plan: Plan) -> str:
+    """Why objectives that are named for what happens show something else; empty where they show it."""
+    if demand.kind not in ("verb", "state", "beyond") or not asked:
+        return ""
+    if demand.denied and demand.kind != "beyond" and not any(shows_not(each, demand.base) for each in asked):
+        return NOT_SHOWN
+    if not demand.denied and not is_blow_shown(demand.base, asked):
+        return BLOW
+    return strangers(plan, demand, asked)
 
 
 def _asked(clauses: Sequence[Clause], plan: Plan) -> list[Objective]:
@@ -167,14 +185,24 @@ def _more_than(manner: Demand, clause: Clause) -> bool:
 
 
 def _shows(clause: Clause, demand: Demand, plan: Plan) -> bool:
+    asked = _asked([clause], plan)
+    if demand.kind == "often":
+        shown = asks_again if demand.text.lower() == "again" else asks_exactly
+        return any(shown(each) for each in asked)
+    if demand.often:
+        return any(asks_often(each, demand.value or 0.0) for each in asked)
     if demand.kind == "number" and not demand.unit:
         return _counted(clause, demand)
-    if demand.kind == "state":
-        return True
+    if demand.bound:
+        short = plan.simulation.duration
+        return any(asks_by_then(each, demand) for each in asked) or (bool(asked) and ends_by(short, demand))
     if demand.kind == "number":
-        asked = any(asks(each, demand) for each in _asked([clause], plan))
-        return asked or any(states(plan, name, field, demand) for name, field in clause.things)
-    if _asked([clause], plan):
+        return any(asks(each, demand) for each in asked) or any(
+            states(plan, name, field, demand) for name, field in clause.things
+        )
+    if demand.denied:
+        return bool(asked)
+    if asked or demand.kind == "state":
         return True
     scheduled = {each.name for each in plan.schedules}
     if demand.base in SCHEDULED and any(name in scheduled for name, _ in clause.things):
@@ -195,8 +223,15 @@ def _counted(clause: Clause, demand: Demand) -> bool:
 
 
 def _lacks(demand: Demand) -> str:
+    """What a demand lacks that clauses hold, and no objective or thing of theirs shows."""
+    if demand.kind == "often":
+        return AGAIN if demand.text.lower() == "again" else EXACTLY
+    if demand.often:
+        return OFTEN
+    if demand.bound:
+        return BY_THEN.format(demand.value)
     if demand.kind == "number" and not demand.unit:
         return "fewer things are named for it"
     if demand.kind == "number":
         return "no objective that is named for it has this value, nor a property, such as puck.velocity, nor a schedule"
-    return "it happens, and no objective is named for it"
+    return NOT_SHOWN if demand.denied else "it happens, and no objective is named for it"

@@ -1,4 +1,4 @@
-"""Which objectives can show a verb: of verbs of one meaning alone."""
+"""Which objectives can show a verb, or that it does not come to be: of verbs of one meaning alone."""
 
 from __future__ import annotations
 
@@ -35,7 +35,30 @@ _SHOW = (  # verbs of one meaning alone, and the kinds of objective and predicat
     ("topple knock tip overturn collapse tumble", _OVER),
     ("stop halt brake settle park", _STOPS),
 )
+# What shows that something does not happen, beside a denial of what would show that it does.
+_STAYS = """stays_on stays_inside stays_within contained_in rests_on lies_on supported_by weighs_on settles upright
+gone_between turned_between tilt_between conserves counts floats level_in"""
+_STILL = f"{_STAYS} spin_between own_spin_between speed_between rolls_without_slip"
+_KEEPS = "stays_inside contained_in stays_on stays_within conserves counts level_in fills gone_between"
+_APART = "never_touches stops_before touches_only stays_within flies falls_freely"
+_NOT_SHOWN = (
+    (" ".join(sorted(BLOWS)) + " touch meet reach scrape graze", _APART),
+    ("fall drop topple knock tip overturn collapse tumble land capsize", _STAYS),
+    ("leave escape exit spill overflow empty drain splash", _KEEPS),
+    ("move slide shift slip budge drift go turn spin rotate swing roll skid swivel pivot", _STILL),
+    ("bounce rebound", "rests_on stays_on lies_on settles dies_down"),
+    ("float", "sinks submerged rests_on lies_on"),
+    ("sink", "floats level_in supported_by rests_on stays_on"),
+    ("tilt", "tilt_between upright turned_between"),
+    ("stop halt brake settle park rest", "moves speed_between crosses spin_between rolls gone_between reaches"),
+)
+NOT_SHOWN_BY = {base: frozenset(names.split()) for verbs, names in _NOT_SHOWN for base in verbs.split()}
 SHOWN_BY = {base: frozenset(names.split()) for verbs, names in _SHOW for base in verbs.split()}
+
+
+_WOULD_SHOW = frozenset(
+    ["moves", "crosses", "gone_between", "touches", "reaches", "collides_with", "drops", "stays_inside", "contained_in"]
+)
 
 
 def shows(objective: Objective, names: Set[str]) -> bool:
@@ -60,3 +83,12 @@ def is_blow_shown(base: str, objectives: Sequence[Objective]) -> bool:
         return True
     several = len({each.object for each in objectives}) > 1
     return several or any(shows(each, SHOWN_BY[base]) for each in objectives)
+
+
+def shows_not(objective: Objective, base: str) -> bool:
+    """Whether an objective asks that something does not happen; of verbs of which nothing is known any may."""
+    if base not in SHOWN_BY and base not in NOT_SHOWN_BY:
+        return True
+    denials = {f"not_{name}" for name in SHOWN_BY.get(base, frozenset())}
+    denials |= {f"not_{name}" for name in _WOULD_SHOW if base not in SHOWN_BY}
+    return shows(objective, denials | NOT_SHOWN_BY.get(base, frozenset()))

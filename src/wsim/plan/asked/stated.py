@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from wsim.plan.layout.boxes import rotation
 from wsim.plan.schema.clause import OF_CORDS, WHOLE
+from wsim.plan.schema.formula import Always, Mean, Predicate
 
 if TYPE_CHECKING:
     from wsim.plan.asked.demands import Demand
@@ -49,6 +50,24 @@ def asks(objective: Objective, demand: Demand) -> bool:
         if any(close(value, demand) for value in _numbers(fields.values())):
             return True
     return False
+
+
+def asks_by_then(objective: Objective, demand: Demand) -> bool:
+    """Whether an objective asks for something by a time: in a window that ends by then, or from then on."""
+    for node in objective.formula.walk() if objective.formula is not None else ():
+        windows = getattr(node, "windows", None) or (getattr(node, "window", None),)
+        holds = isinstance(node, Always | Mean)
+        if any(w is not None and ends_by(w[0] if holds else w[1], demand) for w in windows):
+            return True
+        if isinstance(node, Predicate) and any(close(value, demand) for value in _numbers(dict(node).values())):
+            return True
+    return False
+
+
+def ends_by(time: float | None, demand: Demand) -> bool:
+    """Whether a time is a stated one, or before it."""
+    assert demand.value is not None
+    return time is not None and time <= demand.value * (1.0 + ROUNDING)
 
 
 def _between(low: float, high: float, demand: Demand) -> bool:

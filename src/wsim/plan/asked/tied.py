@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from wsim.plan.asked.demands import REQUIRED, Demand, demands, tokens
-from wsim.plan.asked.shown import SHOWN_BY, shows
-from wsim.plan.asked.stated import FIELDS, asks, close, values
+from wsim.plan.asked.demands import REQUIRED, Demand, demands
+from wsim.plan.asked.often import asks_often
+from wsim.plan.asked.shown import SHOWN_BY, shows, shows_not
+from wsim.plan.asked.stated import FIELDS, asks, asks_by_then, close, values
+from wsim.plan.asked.tokens import tokens
 from wsim.plan.asked.vocabulary import CAUSES, stem
 from wsim.plan.schema.clause import OF_JOINTS, WHOLE, Clause
-from wsim.plan.schema.formula import Then
 
 if TYPE_CHECKING:
-    from wsim.plan.schema import Objective, Plan, PlanObject
+    from wsim.plan.schema import Plan, PlanObject
 
 UNASKED = "no objective of the plan asks for it"
 UNFOUND = "no number that the plan states is this one"
@@ -43,6 +44,9 @@ def _clause(plan: Plan, demand: Demand) -> Clause:
 def _evidence(plan: Plan, demand: Demand) -> Iterator[int | str]:
     if demand.kind == "number":
         yield from _of_number(plan, demand)
+        return
+    if demand.denied:
+        yield from (k for k, each in enumerate(plan.objectives) if shows_not(each, demand.base))
         return
     base = _base(plan, demand)
     shown = SHOWN_BY.get(base, _STATES.get(base))
@@ -81,27 +85,16 @@ def _of_number(plan: Plan, demand: Demand) -> Iterator[int | str]:
             if any(close(value, demand) for value in values(plan, joint.name, field)):
                 yield f"{joint.name}.{field}"
     if demand.unit:
-        yield from (k for k, each in enumerate(plan.objectives) if asks(each, demand))
+        has = asks_by_then if demand.bound else asks
+        yield from (k for k, each in enumerate(plan.objectives) if has(each, demand))
     else:
         named = [item.name for item in plan.objects if _counted(item, demand)]
-        if _is_often(plan, demand):
-            yield from (k for k, each in enumerate(plan.objectives) if _as_often(each, demand))
+        if demand.often:
+            yield from (k for k, each in enumerate(plan.objectives) if asks_often(each, demand.value or 0.0))
         else:
             yield from named or _as_many(plan, demand)
     if demand.unit == "s" and close(plan.simulation.duration, demand):
         yield f"{WHOLE}.duration"
-
-
-def _is_often(plan: Plan, demand: Demand) -> bool:
-    """Whether a number says how often: "three times", "twice"."""
-    said = [token.text for token in tokens(plan.prompt) if not token.stops]
-    return said[demand.last] == "twice" or said[demand.last + 1 : demand.last + 2] == ["times"]
-
-
-def _as_often(objective: Objective, demand: Demand) -> bool:
-    """Whether an objective has as many events, one after the other."""
-    nodes = objective.formula.walk() if objective.formula is not None else ()
-    return any(isinstance(node, Then) and len(node.events) == demand.value for node in nodes)
 
 
 def _counted(item: PlanObject, demand: Demand) -> bool:

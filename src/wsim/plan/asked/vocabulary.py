@@ -85,6 +85,41 @@ PREPOSITIONS = _set(
 )
 RELATIONS = PREPOSITIONS - {"of", "by", "with", "at", "without", "until"}
 
+# What is no noun: a number behind one of these counts, and before one of these does not.
+NO_NOUN = (
+    DETERMINERS
+    | PREPOSITIONS
+    | BEFORE_BASE
+    | _set(
+        """
+        after again all also am and are as be been before being but could did do does each even ever first for former
+        had has have he her here him how if is just last later latter less more most must next not now once one only
+        or other others otherwise own past remaining same she since so still than them there these they this
+        those though too twice was we were what when where while whose why you almost exactly least nearly roughly upon
+        versus via
+        """
+    )
+)
+QUANTITIES = _set(  # whose value may stand right behind them
+    """
+    acceleration angle coefficient damping density depth distance factor friction gravity height length level mass
+    radius rate ratio restitution scale share size speed spacing stiffness thickness time velocity weight width
+    """
+)
+NUMBERED = _set("number no nr type model mark mk version class series")  # a number behind these is a name's
+COMPARES = _set("as the its their that this more less")  # after "twice" and "three times": how much, not how often
+BY_THEN = frozenset((("less", "than"), ("later", "than"), ("at", "most")))  # before a time: by then at the latest
+BEFORE_TIMES = _set("within under in for after than every about almost over just")  # "a second" behind these is a time
+DENIES = _set("not never cannot without no nothing none neither nobody avoid avoids avoiding avoided")
+KEEPS_FROM = _set("keep keeps kept prevent prevents prevented stop stops stopped hinder hinders hindered")
+# Between a denial and its verb: "does not ever get to be touched", "without a single block falling".
+BETWEEN = _set(
+    """
+    ever even once yet then either or nor to be been being get gets got have has had do does did will would can could
+    at any all time longer again
+    """
+)
+
 # Manner without a number: nothing measures it unless a clause of its own says what does.
 MANNERS = _set("gently softly slowly quickly rapidly suddenly smoothly violently carefully lightly barely hard fast")
 NO_MANNER = _set(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 from wsim.plan.schema.formula import Predicate
@@ -25,6 +26,7 @@ class Said:
         throughout: It is to hold all the time, from the start on.
         whole: And to the end.
         optional: It is one of several alternatives.
+        end: The latest time that it is asked at [s]; infinite where that is the end of the run.
     """
 
     where: str
@@ -34,6 +36,7 @@ class Said:
     throughout: bool = False
     whole: bool = False
     optional: bool = False
+    end: float = inf
 
     @property
     def object(self) -> str | None:
@@ -60,7 +63,7 @@ def said(plan: Plan) -> list[Said]:
         else:
             alone = objective.formula if isinstance(objective.formula, Predicate) else None
             always = alone is not None and alone.alone == "always"
-            found += list(_of(objective.formula, Said(f"{where}.formula", "", {}, False, always, always)))
+            found += list(_of(objective.formula, Said(f"{where}.formula", "", {}, False, always, always), None))
     return found
 
 
@@ -70,10 +73,17 @@ def _kind(where: str, objective: Objective) -> Said:
     return Said(where, objective.kind, fields, throughout=throughout, whole=throughout)
 
 
-def _of(node: Node, under: Said) -> Iterator[Said]:
-    """The predicates of a formula, each with what the operators above it say of when."""
+def _of(node: Node, under: Said, at: float | None) -> Iterator[Said]:
+    """The predicates of a formula, each with what the operators above it say of when.
+
+    Args:
+        node: The formula.
+        under: What is said of it so far.
+        at: The latest time that it is asked at [s]; None where nothing says when.
+    """
     op = str(getattr(node, "op", ""))
     if isinstance(node, Predicate):
+        under = replace(under, end=inf if at is None else at)
         fields = {name: getattr(node, name) for name in type(node).model_fields if name != "op"}
         yield replace(under, name=op, fields=fields)
         return
@@ -82,7 +92,12 @@ def _of(node: Node, under: Said) -> Iterator[Said]:
     if op == "always":
         window = getattr(node, "window", None)
         under = replace(under, throughout=window is None or window[0] == 0.0, whole=window is None)
+    if op in ("always", "eventually"):
+        window = getattr(node, "window", None)
+        at = (at or 0.0) + (inf if window is None or window[1] is None else window[1])
+    elif op in ("then", "until", "finally", "mean"):
+        at = inf
     if op == "not":
         under = replace(under, denied=not under.denied)
     for part in node.parts():
-        yield from _of(part, under)
+        yield from _of(part, under, at)

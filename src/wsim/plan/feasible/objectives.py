@@ -8,22 +8,9 @@ from typing import TYPE_CHECKING
 from wsim.plan.feasible.asked import Said, said
 
 if TYPE_CHECKING:
-    from wsim.plan.schema import Plan, PlanObject
+    from wsim.plan.schema import Plan
     from wsim.plan.schema.nodes import Node
 
-_MOVES = (
-    "moves",
-    "topples",
-    "slides",
-    "rolls_down",
-    "rolls",
-    "swings",
-    "flies",
-    "tilts",
-    "tilts_to",
-    "floats",
-    "sinks",
-)
 _TIPPED = 45.0  # [deg]: as "topples" has it
 # Two things that cannot both be true of one object against one other: at the end, or ever.
 _EXCLUDE = (
@@ -37,10 +24,7 @@ LATE = 1e-9  # [s]
 def objective_faults(plan: Plan) -> Iterator[str]:
     """All of them."""
     asked = said(plan)
-    items = {item.name: item for item in plan.objects}
     yield from _windows(plan)
-    for each in asked:
-        yield from _fixed(each, items)
     yield from _contradictions(asked)
 
 
@@ -69,12 +53,6 @@ def _latest(node: Node) -> float:
         return max(getattr(node, "seconds", None) or 0.0, 0.0)
     inner = max((_latest(part) for part in node.parts()), default=0.0)
     return own + inner
-
-
-def _fixed(each: Said, items: dict[str, PlanObject]) -> Iterator[str]:
-    item = items.get(each.object or "")
-    if item is not None and item.state == "static" and each.name in _MOVES and not each.denied:
-        yield f'{each.where}: {each.name} of {item.name}, which is static and never moves; make it "dynamic"'
 
 
 def _contradictions(asked: Sequence[Said]) -> Iterator[str]:

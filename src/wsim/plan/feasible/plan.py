@@ -7,6 +7,7 @@ from pathlib import Path
 from wsim.errors import UserError
 from wsim.plan.feasible.fluids import fluid_faults
 from wsim.plan.feasible.joints import joint_faults
+from wsim.plan.feasible.motions import motion_faults
 from wsim.plan.feasible.objectives import objective_faults
 from wsim.plan.feasible.starts import start_faults
 from wsim.plan.schema import Plan
@@ -16,7 +17,8 @@ SHOWN = 8  # faults in a message
 
 def faults(plan: Plan) -> list[str]:
     """What no run of a laid-out plan can show, a line each with its path and the way out."""
-    return [*fluid_faults(plan), *joint_faults(plan), *objective_faults(plan), *start_faults(plan)]
+    every = (fluid_faults, joint_faults, motion_faults, objective_faults, start_faults)
+    return [fault for each in every for fault in each(plan)]
 
 
 def refuse_impossible(plan: Plan, where: str | Path = "plan") -> None:

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from wsim.errors import UserError
-from wsim.plan.asked.demands import demands, tokens
+from wsim.plan.asked.demands import demands
+from wsim.plan.asked.tokens import tokens
 from wsim.plan.feasible.asked import Said, said
 from wsim.plan.layout.bodies import around
 from wsim.plan.layout.boxes import Box

@@ -32,10 +32,27 @@ def schedule_problems(plan: Draft) -> Iterator[str]:
         if key in seen:
             yield f"{where}: schedules.{seen[key]} is of the same {each.quantity}; put all keys into one"
         seen.setdefault(key, i)
-        if each.after is None and each.times[-1] > plan.simulation.duration:
-            yield f"{where}.times: {each.times[-1]:g} s is after the end, at {plan.simulation.duration:g} s"
-        if each.after is not None:
-            yield from (f"{where}.after.{problem}" for problem in _event(plan, i, each.after))
+        wrong = [] if each.after is None else [f"after.{problem}" for problem in _event(plan, i, each.after)]
+        yield from (f"{where}.{problem}" for problem in wrong or _beyond_the_end(plan, each))
+
+
+def _beyond_the_end(plan: Draft, each: SchedulePlan) -> Iterator[str]:
+    clock, end = earliest(plan, each), plan.simulation.duration
+    if (said := quantities.beyond_the_end(clock, each.times[-1], end)) is not None:
+        yield f"{'after.delay' if clock > end else 'times'}: {said}"
+
+
+def earliest(plan: Draft, each: SchedulePlan) -> float:
+    """The first moment at which a schedule's clock may begin [s]."""
+    if each.after is None:
+        return 0.0
+    names = [one.name for one in plan.schedules]
+    before = each.after.start or each.after.end
+    came = 0.0
+    if before in names[: names.index(each.name)]:
+        other = plan.schedules[names.index(before)]
+        came = earliest(plan, other) + other.times[0 if each.after.start else -1]
+    return came + (each.after.delay or 0.0)
 
 
 def _quantity(plan: Draft, where: str, each: SchedulePlan) -> tuple[Quantity, Joint | None] | str:
@@ -50,8 +67,14 @@ def _quantity(plan: Draft, where: str, each: SchedulePlan) -> tuple[Quantity, Jo
             )
     elif each.of not in joints and each.of not in items:
         known = ", ".join([*joints, *(item.name for item in plan.objects)][:12])
-        return f"{where}.of: no joint and no object {each.of!r}; the plan has {known}"
+        robots = "; a robot's own joints go by its actuation" if any(_is_robot(item) for item in plan.objects) else ""
+        return f"{where}.of: no joint and no object {each.of!r}; the plan has {known}{robots}"
     kind = _kind(each.of, joints, items)
+    if kind is None and _is_robot(items[str(each.of)]):
+        return (
+            f"{where}.of: {each.of} is a robot, whose joints go by its registration.actuation: "
+            '{"kind": "schedule", "joint": ..., "times": [s], "target": [deg or m]}'
+        )
     if kind is None:
         return f"{where}.of: {each.of} is a {items[str(each.of)].primitive}, of which no schedule is; name a solid"
     found = quantities.OF[kind].get(each.quantity)
@@ -62,6 +85,10 @@ def _quantity(plan: Draft, where: str, each: SchedulePlan) -> tuple[Quantity, Jo
             f"{each.quantity!r}"
         )
     return found, joints.get(str(each.of))
+
+
+def _is_robot(item: PlanObject) -> bool:
+    return item.primitive == "robot"
 
 
 def _kind(of: str | Pair, joints: dict[str, Joint], items: dict[str, PlanObject]) -> What | None:

@@ -33,6 +33,8 @@ SHOWN = 0.9  # of the time: for how long a camera that is kept shows each main s
 LOOKED_AT = 4  # views whose pictures are looked at, at least, for what hides what
 OWN = 1.1  # what a view from the side that the camera was on is worth, of one from another
 LIT = 0.05  # what a view that the sun is behind is worth more, and one against it less
+LEVEL, STEEP = 30.0, 0.6  # [deg] that a view is above the horizon; a view from above is worth less by so much
+APART = 40.0  # [deg] between the ways in which two cameras look, where one of them was moved
 DIGITS = 3
 
 
@@ -42,7 +44,8 @@ class Framing:
     A camera is kept as it is if it is fixed, or if it shows what the run is about: each main subject (`subjects`) for
     nine tenths of the time that matters, at a useful size and not hidden, about as well as the best view that is tried.
     Else it is turned, moved or made to follow; the first one to the best view of all, the others where that shows
-    enough from the side on which they are. What could move and was in the picture of one stays in that of one. A world
+    enough from the side on which they are, or from one where none is. What could move and was in the picture of one
+    stays in that of one. A world
     without cameras gets the best view, and one that stands and sees all of the way if that goes along.
 
     Args:
@@ -72,10 +75,12 @@ class Framing:
             return list(given)
         if not given:
             return self._own(Camera(prim=DEFAULT_CAMERA, eye=(1.0, 0.0, 0.0), target=(0.0, 0.0, 0.0)))
-        framed = [camera if camera.fixed else self._kept_or_better(camera, k == 0) for k, camera in enumerate(given)]
+        framed: list[Camera] = []
+        for camera in given:
+            framed.append(camera if camera.fixed else self._kept_or_better(camera, framed))
         self._needed = self._ever(given) & ~self._ever(framed)
         if self._needed.any() and not given[0].fixed:
-            framed[0] = self._kept_or_better(given[0], True)
+            framed[0] = self._kept_or_better(given[0], [])
         return list(given) if (self._ever(given) & ~self._ever(framed)).any() else framed
 
     def _ever(self, cameras: Sequence[Camera]) -> Array:
@@ -115,26 +120,36 @@ class Framing:
         whole = self._best([view for view in tried if view.follows is None])[0]
         return [_rounded(best), _rounded(whole.model_copy(update={"prim": f"{DEFAULT_CAMERA}_whole"}))]
 
-    def _kept_or_better(self, camera: Camera, first: bool) -> Camera:
+    def _kept_or_better(self, camera: Camera, framed: Sequence[Camera]) -> Camera:
+        """A camera, or a better one, which looks from elsewhere than those that are `framed` already."""
         assert self._scenario is not None
         own, shows = self._worth(camera)
         if shows and own >= WELL:
             return camera
         there, worth = self._best(views_from_there(camera, self._scenario, self._around))
         worth *= OWN
-        if first or worth < 0.5 * WELL:
-            other, found = self._best(views(camera, self._scenario, self._around))
+        if any(_apart(there, other) < APART for other in framed):
+            there, worth = camera, 0.0  # what is seen from there is seen
+        if not framed or worth < 0.5 * WELL:
+            tried = views(camera, self._scenario, self._around)
+            other, found = self._best(view for view in tried if all(_apart(view, one) >= APART for one in framed))
             if found > worth:
                 there, worth = other, found
         if shows and own >= KEPT * worth / OWN:
             return camera
         return _rounded(there) if worth > own else camera
 
-    def _lit(self, view: Camera) -> float:
-        """What a view is worth for its light, of one across it: more with the sun behind the camera."""
+    def _taken_from(self, view: Camera) -> float:
+        """What a view is worth for where it is taken from, of one as people stand, with the sun at their side.
+
+        More with the sun behind the camera, and less from above: there a fall is a ball that becomes smaller.
+        """
+        rise = math.degrees(math.asin((view.eye[2] - view.target[2]) / math.dist(view.eye, view.target)))
+        from_above = STEEP * max(0.0, rise - LEVEL) / (90.0 - LEVEL)
         sun = next((light.direction for light in self.world.lights if light.kind == "distant"), SUN)
         back, light = (np.array(way[:2]) for way in (np.subtract(view.eye, view.target), sun))
-        return 1.0 - LIT * float(back @ light) / max(float(np.linalg.norm(back) * np.linalg.norm(light)), 1e-12)
+        shade = LIT * float(back @ light) / max(float(np.linalg.norm(back) * np.linalg.norm(light)), 1e-12)
+        return (1.0 - from_above) * (1.0 - shade)
 
     def _worth(self, camera: Camera) -> tuple[float, bool]:
         """What a camera is worth, and whether it shows each main subject for long enough."""
@@ -158,7 +173,7 @@ class Framing:
         found = [(shown(view, self._scenario), view) for view in tried]
         found = [each for each in found if each[0].ever[self._needed].all()] or found
         rated = sorted(
-            ((self._lit(view) * seen.worth(self._scenario), seen, view) for seen, view in found),
+            ((self._taken_from(view) * seen.worth(self._scenario), seen, view) for seen, view in found),
             key=lambda each: -each[0],
         )
         if self._look is None:
@@ -170,7 +185,7 @@ class Framing:
                 break  # those that follow are worth less, hidden or not
             if _side(view) not in sides:
                 sides.add(_side(view))
-                told = self._lit(view) * seen.worth(self._scenario, self._hidden(view, seen))
+                told = self._taken_from(view) * seen.worth(self._scenario, self._hidden(view, seen))
                 if told > best[1]:
                     best = (view, told)
         return best
@@ -180,6 +195,12 @@ def write_views(writer: RecordingWriter, world: World, motion: Motion, named: Se
     """Have a recording say where a world's cameras would be framed, where no pictures are taken."""
     if world.cameras:
         writer.views(Framing(world, motion, named).cameras(), motion.time, motion.body_q)
+
+
+def _apart(one: Camera, other: Camera) -> float:
+    """Between the ways in which two cameras look [deg]."""
+    ways = [np.subtract(each.target, each.eye) / math.dist(each.target, each.eye) for each in (one, other)]
+    return math.degrees(math.acos(float(np.clip(ways[0] @ ways[1], -1.0, 1.0))))
 
 
 def _side(view: Camera) -> tuple[str | None, ...]:

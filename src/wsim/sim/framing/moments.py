@@ -21,6 +21,7 @@ STILLS = 6  # of a run
 SLOW = 0.05  # of its greatest speed: what is slower rests
 BLOW = 0.25  # of its greatest speed: what changes by more from one frame to the next was struck
 AGAIN = 0.6  # what the same thing weighs when it happens again
+FLIGHT = 0.5  # of its size: what falls or flies farther without a contact does so for a moment of its own
 HIGH = 0.15  # of the range of its heights: how far a summit stands out
 
 
@@ -86,7 +87,9 @@ def _of(subject: Subject, motion: Motion, rows: Sequence[int]) -> Iterator[Momen
     if fastest * float(motion.time[-1] - motion.time[0]) < 1e-3 * max(subject.size, 1e-6):
         return
     if rows:
-        yield from _touched(name, motion.force[:, list(rows)].max(axis=1))
+        force = motion.force[:, list(rows)].max(axis=1)
+        yield from _touched(name, force)
+        yield from _in_flight(name, force, centre, FLIGHT * subject.size)
     jumps = np.linalg.norm(np.diff(between, axis=0), axis=1)  # at frame k + 1
     for k in _peaks(jumps, BLOW * fastest):
         yield Moment(k + 1, f"{name} is struck", min(1.0, 0.4 + 0.5 * float(jumps[k]) / fastest))
@@ -110,6 +113,15 @@ def _touched(name: str, force: Array) -> Iterator[Moment]:
     onset = np.flatnonzero(free[:-2] & free[1:-1] & ~free[2:]) + 2
     for n, k in enumerate(onset[:20]):
         yield Moment(int(k), f"{name} touches", 0.9 if n == 0 else 0.6)
+
+
+def _in_flight(name: str, force: Array, centre: Array, least: float) -> Iterator[Moment]:
+    """In the middle of the way down of what came off something, and touches nothing until it is at least so far off."""
+    free = np.concatenate([[False], force <= 0.0, [False]])
+    begins, ends = np.flatnonzero(~free[:-1] & free[1:]), np.flatnonzero(free[:-1] & ~free[1:])
+    for first, end in zip(begins.tolist(), ends.tolist(), strict=True):
+        if first > 0 and end < len(force) and centre[first, 2] - centre[end, 2] > least:
+            yield Moment((first + end) // 2, f"{name} falls", 0.6)
 
 
 def _peaks(values: Array, least: float) -> list[int]:

@@ -1,0 +1,222 @@
+"""Who does it to whom: the things of the plan that stand before and behind a verb, by their names."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from wsim.plan.asked import vocabulary as words
+from wsim.plan.asked.demands import demands
+from wsim.plan.asked.shown import BLOWS, shows
+from wsim.plan.asked.tokens import Words, text_at
+
+if TYPE_CHECKING:
+    from wsim.plan.asked.demands import Demand
+    from wsim.plan.schema import Objective, Plan
+
+MEETS = BLOWS | {"touch", "push", "knock", "land", "meet"}  # what one thing does to another
+_EACH_OTHER = frozenset(("collide", "meet", "touch", "crash"))  # what two do to each other
+_TO = frozenset(("into", "against", "with", "on", "onto", "upon", "over", "down"))  # between a verb and whom it is of
+_INTO = frozenset(("roll", "slide", "fly", "swing", "drive", "run", "move", "go", "glide", "fall", "drop", "plunge"))
+_CONTACT = frozenset(("collides_with", "touches"))
+_FLOOR = frozenset(("ground", "floor"))
+_ELSE = ("touches_only", "stays_within", "follows_path", "conserves", "ordered")  # says something of other kinds
+Names = frozenset[str]
+Mentions = dict[int, tuple[int, Names]]  # of the plan's things, by their last tokens: where each begins, and what it is
+
+
+@dataclass(frozen=True)
+class Parties:
+    """Who takes part in what a verb says, each as the names of the things that it may be; unknown ones are left out.
+
+    Attributes:
+        does: Who does it, each of several.
+        bears: Whom it is done to.
+    """
+
+    does: tuple[Names, ...]
+    bears: Names | None
+
+
+def strangers(plan: Plan, demand: Demand, objectives: Sequence[Objective]) -> str:
+    """Why none of a verb's objectives is about those that it is said of; empty where one is, or it is not known.
+
+    Args:
+        plan: The plan.
+        demand: The verb.
+        objectives: Those that clauses name for it.
+    """
+    into = demand.base in _INTO
+    if into:  # it is said of the motion as well: what is asked of a blow alone is compared
+        objectives = [each for each in objectives if shows(each, _CONTACT)]
+    if not objectives or not (into or demand.base in MEETS):
+        return ""
+    found = _parties(Words.of(plan.prompt), plan, demand)
+    if found.bears is None:
+        return ""
+    bears = _whole(plan, found.bears)
+    asked = [(_involved(each, plan), each) for each in objectives]
+    if any(names is None for names, _ in asked):
+        return ""
+    known = [(names, each) for names, each in asked if names is not None]
+    for doer in found.does or (None,):
+        if not any(_is_about(names, doer and _whole(plan, doer), bears) for names, _ in known):
+            who = f"{_said(doer)} and {_said(found.bears)}" if doer else _said(found.bears)
+            about = "; ".join(" and ".join(sorted(names)) for names, _ in known)
+            return f"it is said of {who}, and the objectives that are named for it are about {about}"
+    return ""
+
+
+def _whole(plan: Plan, names: Names) -> Names:
+    """Things with all that is tied to them: what hits a lever's paddle hits the lever, and a scale is its pan."""
+    ties = [{joint.child, joint.parent} for joint in plan.joints] + [{cord.a, cord.b} for cord in plan.cords]
+    while more := {name for tie in ties if names & tie for name in tie if name is not None} - names:
+        names |= more
+    return names
+
+
+def _said(names: Names) -> str:
+    return " or ".join(sorted(names))
+
+
+def _is_about(names: Names, doer: Names | None, bears: Names) -> bool:
+    """Whether an objective about some things is about those: both, or what the blow does to one of them."""
+    if len(names) == 1:
+        return bool(names & (bears | (doer or frozenset())))
+    return any(one in bears and (doer is None or other in doer) for one in names for other in names - {one})
+
+
+def _involved(objective: Objective, plan: Plan) -> Names | None:
+    """The plan's things that an objective names; None where it names others, or many at a time."""
+    if objective.formula is None:
+        found = {name for name in (objective.object, objective.ref) if name is not None}
+    else:
+        if any(str(getattr(node, "op", "")) in _ELSE for node in objective.formula.walk()):
+            return None
+        found = objective.formula.names()
+    known = {item.name for item in plan.objects}
+    return frozenset(found) if found and found <= known else None
+
+
+def _parties(read: Words, plan: Plan, demand: Demand) -> Parties:
+    verbs = {each.first for each in demands(plan.prompt) if each.kind in ("verb", "state", "beyond")}
+    named = _mentions(read, plan)
+    k = demand.first
+    passive = text_at(read.said, k + 1) == "by"
+    if demand.base in _INTO:
+        return Parties(_before(read, named, verbs, k), _met(read, named, verbs, k + 1))
+    bears = _behind(read, named, verbs, k + 1 + passive)
+    does = _before(read, named, verbs, k)
+    if bears is None and demand.base in _EACH_OTHER and not passive:  # "two balls collide", "a ball and a box meet"
+        bears = does[1] if len(does) == 2 else does[0] if len(does) == 1 and len(does[0]) > 1 else None
+        return Parties(does[:1], bears)
+    return Parties(does, bears)
+
+
+def _mentions(read: Words, plan: Plan) -> Mentions:
+    """What of the plan the prompt's nouns name."""
+    own = {item.name: set(item.name.lower().split("_")) | (_FLOOR if item.primitive == "ground" else set())
+           for item in plan.objects}  # fmt: skip
+    found: Mentions = {}
+    k = 0
+    while k < len(read.said):
+        end, names = k, _named_by(read, k, own) if _may_name(read, k) else frozenset()
+        while names and (more := _named_by(read, end + 1, own) & names) and end + 1 not in read.breaks:
+            end, names = end + 1, more
+        if names:
+            found[end] = k, _narrowed(read, k, end, names, own)
+        k = end + 1
+    return found
+
+
+def _may_name(read: Words, k: int) -> bool:
+    """Whether a name may begin with a word: a number stands behind one."""
+    text = read.said[k].text
+    return text.isalpha() and text not in words.NO_NOUN and text not in words.WORDS
+
+
+def _named_by(read: Words, k: int, own: dict[str, set[str]]) -> Names:
+    """The things that have a word in their names."""
+    text = text_at(read.said, k)
+    forms = {text, text.removesuffix("s"), text.removesuffix("es")}
+    return frozenset(name for name, parts in own.items() if forms & parts)
+
+
+def _narrowed(read: Words, begin: int, end: int, names: Names, own: dict[str, set[str]]) -> Names:
+    """Those whose whole name is said, where some are: "the red ball" is not the ball."""
+    said = {read.said[k].text for k in range(max(0, begin - 3), end + 1)}
+    said |= {text.removesuffix("s") for text in said}
+    whole = [name for name in names if own[name] - _FLOOR <= said]
+    longest = max((len(own[name]) for name in whole), default=0)
+    return frozenset(name for name in whole if len(own[name]) == longest) or names
+
+
+def _behind(read: Words, named: Mentions, verbs: set[int], k: int) -> Names | None:
+    """What a verb is done to: the noun right behind it, with no preposition between but those of `_TO`."""
+    starts = {begin: (end, names) for end, (begin, names) in named.items()}
+    for i in range(k, min(k + 6, len(read.said))):
+        text = read.said[i].text
+        if i in read.breaks or i in verbs:
+            return None
+        if i in starts:
+            end, names = starts[i]
+            return names if _is_a_noun(read, end) else None
+        if text in words.NO_NOUN and text not in words.DETERMINERS and not (text in _TO and i <= k + 1):
+            return None
+    return None
+
+
+def _met(read: Words, named: Mentions, verbs: set[int], k: int) -> Names | None:
+    """What something goes into or against, behind all else that is said of its way."""
+    for i in range(k, len(read.said)):
+        if i in read.breaks or i in verbs:
+            return None
+        if read.said[i].text in ("into", "against"):
+            return _behind(read, named, verbs, i)
+    return None
+
+
+def _is_a_noun(read: Words, end: int) -> bool:
+    """Whether nothing follows that is a noun: "the box lid" is no box."""
+    after = text_at(read.said, end + 1)
+    plain = not after.isalpha() or after in words.NO_NOUN or after.endswith("ly") or words.stem(after) is not None
+    return plain or end + 1 in read.breaks or end + 1 == len(read.said)
+
+
+def _before(read: Words, named: Mentions, verbs: set[int], k: int) -> tuple[Names, ...]:
+    """Who does it: the noun before a verb that no preposition and no other verb governs, and those tied to it."""
+    found: list[Names] = []
+    i = k - 1
+    while i >= 0 and i + 1 not in read.opens:
+        if found and i + 1 in read.breaks:
+            break
+        if i not in named:
+            if text_at(read.said, i) in ("it", "they", "he", "she") and not found:
+                return ()
+            if found and text_at(read.said, i) != "and":
+                break
+            i -= 1
+            continue
+        begin, names = named[i]
+        free = begin
+        while free > 0 and _describes(read, free - 1, verbs):
+            free -= 1
+        governed = text_at(read.said, free - 1)
+        is_object = free - 1 in verbs and governed not in ("let", "lets", "make", "makes", "watch", "see")
+        if governed in words.PREPOSITIONS - {"after", "before", "until"} or is_object:
+            if found:
+                break
+            i = free - 2
+            continue
+        found.append(names)
+        i = free - 1
+    return tuple(found)
+
+
+def _describes(read: Words, i: int, verbs: set[int]) -> bool:
+    """Whether a word belongs to the noun behind it: an article, a number, an adjective."""
+    text = read.said[i].text
+    if i + 1 in read.breaks or i in verbs:
+        return False
+    return text in words.DETERMINERS - {"that"} or text not in words.NO_NOUN
