@@ -10,7 +10,7 @@ from wsim.rules.cast import CARRIERS, Beside, Thing
 from wsim.rules.goes import aim, go, movable, push, strike
 from wsim.rules.lexicon import lexicon
 from wsim.rules.phrases import Action, Place
-from wsim.rules.places import MANNERS, arrange, common, do, hang, part, put, stand, support, where
+from wsim.rules.places import MANNERS, UPRIGHT, arrange, common, do, hang, part, put, stand, support, where
 from wsim.rules.reader import EACH_OTHER, Reader
 from wsim.rules.tokens import NOT_IN_THIS_ORDER, NotUnderstood
 
@@ -83,6 +83,8 @@ def _throw(reader: Reader, thing: Thing, action: Action) -> None:
             thing.direction = place.direction
         elif common(reader, thing, place):
             continue
+        elif place.phrase is not None and place.preposition == "over":
+            _over(reader, thing, place)
         elif place.phrase is not None and place.preposition in (*_INTO, "onto", "in", "on"):
             at = where(reader, place.phrase, thing)
             if thing.target is not None and thing.target.support is None and place.preposition in ("on", "in"):
@@ -93,6 +95,18 @@ def _throw(reader: Reader, thing: Thing, action: Action) -> None:
                 aim(reader, thing, place.phrase, action)
         else:
             raise NotUnderstood([place.words], "cannot throw a thing there:")
+
+
+def _over(reader: Reader, thing: Thing, place: Place) -> None:
+    """Over a wall, which stands where the throw is highest."""
+    at = where(reader, place.phrase, thing) if place.phrase is not None else None
+    free = isinstance(at, Thing) and at.count == 1 and at.support is None and not at.beside
+    if not isinstance(at, Thing) or at.noun.key not in UPRIGHT or not free or thing.target is not None:
+        raise NotUnderstood([place.words], "throws things over a wall or a post that stands on the ground, not so:")
+    if at.phrase.length is not None:  # "over a wall of 1 m": its height
+        at.phrase.measures["z"], at.phrase.length = at.phrase.length, None
+    put(at, "ground")
+    thing.over = at
 
 
 # ---- on what moves
@@ -121,6 +135,8 @@ def _ride(reader: Reader, thing: Thing, action: Action) -> None:
         )
         if isinstance(at, Thing) and at.noun.family in CARRIERS:
             support(reader, thing, at)
+        elif thing.support is not None and place.phrase is not None and place.phrase.part == "end":
+            continue  # of what carries it
         elif not common(reader, thing, place):
             raise NotUnderstood([place.words], "lets things ride on a conveyor or a turntable, not there:")
     if thing.support is None:
@@ -192,6 +208,9 @@ def _tilt(reader: Reader, thing: Thing, action: Action) -> None:
 
 def _go(reader: Reader, thing: Thing, action: Action) -> None:
     """Up or down, of a seesaw's end or of what is on it; off or down, of what rolls or slides."""
+    if thing.noun.family == "vehicle" and action.verb == "go" and action.particle is None:
+        wheels.drive(reader, thing, action)
+        return
     seesaw = thing if thing.noun.family == "seesaw" else thing.support
     down_it = any(place.preposition in ("down", "off", "into", "along", "across") for place in action.places)
     if thing.noun.family == "solid" and (down_it or (action.particle == "down" and thing.path is not None)):
@@ -251,7 +270,11 @@ def _return(_reader: Reader, thing: Thing, action: Action) -> None:
 # ---- how it goes on
 def _stop(reader: Reader, thing: Thing, action: Action) -> None:
     """Slide towards something, and stand still before it or against it; what drives comes to rest by its brakes."""
-    if "drive" in thing.does and not action.places:
+    if "drive" in thing.does and all(place.preposition == "way" for place in action.places):
+        for place in action.places:
+            if thing.way not in (None, place.length):
+                raise UserError(f"{action.words!r}: the prompt says before how far it drives")
+            thing.way = place.length
         do(thing, "stop")
         return
     movable(thing, action)
@@ -324,7 +347,7 @@ def _be(_reader: Reader, thing: Thing, action: Action) -> None:
     """What a clause of its own says of a thing: "the ramp is at 20 degrees", "the table is 0.8 m high"."""
     described, phrase = action.target, thing.phrase
     assert described is not None
-    for name in ("material", "color", "length", "angle"):
+    for name in ("material", "color", "length", "angle", "scale", "weight", "shape"):
         value = getattr(described, name)
         if value is None:
             continue
@@ -365,5 +388,5 @@ _RULES: dict[str, Callable[[Reader, Thing, Action], None]] = {
     "carry": _carry, "move": _move, "ride": _ride, "run": _run, "patrol": _patrol, "return": _return,
     "drive": wheels.drive, "cross": wheels.cross, "leave": wheels.leave, "reach": wheels.leave,
     "stop": _stop, "climb": _come_again, "die": _come_again,
-    "stack": _stack, "face": _face, "rest": _rest, "start": _rest, "hold": _refused, "pour": _refused,
+    "stack": _stack, "face": _face, "rest": _rest, "start": _rest, "hold": _refused, "pour": _refused, "fill": _refused,
 }  # fmt: skip

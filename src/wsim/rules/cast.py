@@ -42,6 +42,7 @@ class Thing:
     path: Thing | None = None  # the ramp that it is on
     off: bool = False  # leaves its support
     into: Thing | None = None  # what it comes down in or on, after it has left what it was on
+    over: Thing | None = None  # the wall or post that it is thrown over
     side: str | None = (
         None  # the end of its support: "left", "right", "one", "other", "middle"; of a seesaw: what goes down
     )
@@ -49,6 +50,9 @@ class Thing:
     manners: set[str] = field(default_factory=set)  # "upright", "head_on", "from_rest", "still", ...
     of: int = 1  # how many the prompt spoke of, before one was chosen
     speed: float | None = None  # [m/s]
+    delay: float | None = None  # [s] after which it is let go, or pushed
+    force: float | None = None  # that pushes it [N]
+    pushed_for: float | None = None  # [s]
     way: float | None = None  # that it drives [m]
     angle: float | None = None  # [deg] of a throw, or of a pendulum at the start
     direction: str | None = None
@@ -111,6 +115,7 @@ class Cast:
     water: str | None = None
     pour: Pour | None = None
     ground: str | None = None  # the ground's material, if it is said
+    only: list[tuple[Thing, str]] = field(default_factory=list)  # what alone of all in the water does what
     office: str | None = None  # the prompt's words for one that is patrolled
     duration: float | None = None  # [s], if it was given
     assumptions: list[Assumption] = field(default_factory=list)

@@ -46,6 +46,10 @@ def fall(reader: Reader, thing: Thing, action: Action) -> None:
     if action.particle == "off" or any(place.preposition in ("off", "via") for place in action.places):
         _fall_off(reader, thing, action)
         return
+    into = any(place.preposition in ("in", "into", "inside", "onto") for place in action.places)
+    if thing.support is not None and thing.support.noun.family == "belt" and into and "drop" not in thing.does:
+        _fall_off(reader, thing, action)
+        return
     if thing.path is not None and not action.places and action.particle is None:
         return  # what is let go on a ramp goes down it, as it is said to
     movable(thing, action)
@@ -124,7 +128,7 @@ def come_down(reader: Reader, thing: Thing, action: Action, place: Place) -> Non
         stand(reader, thing.into, [place])  # "in a bucket on the floor"
         return
     at = where(reader, place.phrase, thing)
-    if at == "ground":
+    if at == "ground" or (at is thing.support and place.phrase.part in ("end", "edge")):
         return
     if not isinstance(at, Thing) or at is thing.support or at.noun.family != "vessel":
         raise NotUnderstood([place.words], "lets things come down in a vessel or on the ground, not there:")

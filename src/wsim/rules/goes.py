@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from wsim.errors import UserError
 from wsim.rules.cast import CARRIERS, Thing
 from wsim.rules.lexicon import lexicon
@@ -42,6 +44,12 @@ def go(reader: Reader, thing: Thing, action: Action, how: str) -> None:
     put(thing, "ground")
     aims: list[Place] = []
     thing.off = thing.off or action.particle == "off"
+    forces = [place for place in action.places if place.preposition == "force"] if how == "push" else []
+    if forces:
+        thing.force = forces[0].value
+        lasting = next((place for place in action.places if place.preposition == "time"), None)
+        thing.pushed_for = lasting.value if lasting is not None else None
+        action = replace(action, places=[place for place in action.places if place not in (*forces[:1], lasting)])
     for place in action.places:
         if common(reader, thing, place):
             continue
@@ -124,6 +132,8 @@ def strike(reader: Reader, thing: Thing, action: Action) -> None:
             below.append(place)
         elif place.preposition in ("off", "via"):
             off = place
+        elif thing.path is not None and place.phrase is not None and place.phrase.part in ("bottom", "end"):
+            continue  # of the ramp that it goes down: what it hits stands there
         elif not common(reader, thing, place):
             ground = place.phrase is not None and where(reader, place.phrase, thing) == "ground"
             if not ground or place.preposition not in ("on", "onto", "along"):

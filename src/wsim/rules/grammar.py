@@ -11,13 +11,16 @@ from functools import cache
 from itertools import pairwise
 from typing import Any
 
-from lark import Lark, Token, Transformer, UnexpectedInput, v_args
+from lark import Lark, Token, UnexpectedInput, v_args
 from lark.exceptions import VisitError
 from lark.lexer import Lexer
 
-from wsim.rules.lexicon import Named, grammar_text, lexicon
+from wsim.rules.lexicon import grammar_text, lexicon
 from wsim.rules.phrases import Action, Clause, Phrase, Place
+from wsim.rules.stories import beside_it, delayed, gapped, list_of, names_only
+from wsim.rules.things import is_of, meant, phrases
 from wsim.rules.tokens import NOT_IN_THIS_ORDER, NotUnderstood, Tokens
+from wsim.rules.wheres import Wheres
 
 __all__ = ["NOT_IN_THIS_ORDER", "NotUnderstood", "parse"]
 
@@ -56,81 +59,128 @@ def _parser() -> Lark:
     return Lark(grammar_text(), parser="earley", lexer=_Given, propagate_positions=True, maybe_placeholders=False)
 
 
-def _is(child: Any, *kinds: str) -> bool:
-    return isinstance(child, Token) and child.type in kinds
-
-
-def _meaning(token: Any) -> Any:
-    return token.meaning
-
-
 @v_args(meta=True)
-class _Clauses(Transformer):
+class _Clauses(Wheres):
     """The grammar's rules, each as what it means."""
 
-    def __init__(self, tokens: Tokens) -> None:
-        super().__init__()
-        self.tokens = tokens
-
-    def _words(self, meta: Any) -> str:
-        return "" if meta.empty else self.tokens.text[meta.start_pos : meta.end_pos]
-
-    # ---- sentences
     def start(self, _meta: Any, children: list[Any]) -> list[Clause]:
         return next((child for child in children if isinstance(child, list)), [])
 
     def story(self, _meta: Any, children: list[Any]) -> list[Clause]:
         """The clauses; those after "a tank in which" say where their things are, up to the next full stop."""
         clauses: list[Clause] = []
-        within: Place | None = None
+        within, later = None, None
         for before, child in pairwise([None, *children]):
-            if isinstance(child, Place):
+            if isinstance(child, Clause) and before == "list" and clauses and list_of(clauses[-1], child):
+                continue
+            if isinstance(child, Place) and child.preposition == "after":
+                later = child
+            elif isinstance(child, Place):
                 within = child
             elif isinstance(child, Clause):
+                if before is None and clauses and clauses[-1].inverted and names_only(child):
+                    clauses[-1].subjects += child.subjects  # "in a tank there is a stone and a log"
+                    continue
+                if before is None and clauses:
+                    gapped(clauses[-1], child)
+                if before == "with" and clauses and clauses[-1].actions and not child.actions:
+                    beside_it(clauses[-1], child)
                 child.within, child.given = within, before == "with"
-                clauses.append(child)
+                clauses.append(delayed(child, later))
             elif isinstance(child, tuple):  # "a chair faces a table on which a vase stands"
-                clauses += child
-            elif child == "stop":
-                within = None
+                clauses += [delayed(one, later) for one in child]
+            elif isinstance(child, str):
+                within, later = (None if child == "stop" else within), None
         return clauses
 
     def full(self, _meta: Any, children: list[Any]) -> Clause:
-        subjects = [child for child in children if isinstance(child, Phrase)]
+        subjects = phrases(children)
         actions = [child for child in children if isinstance(child, Action)]
         for before, action in pairwise(children):  # "hits a tower, which topples"
-            if isinstance(action, Action) and action is not actions[0] and _is(before, "REL"):
+            if isinstance(action, Action) and action is not actions[0] and is_of(before, "REL"):
                 action.relative = True
         return Clause(subjects, actions)
 
     bare = full
+
+    def command(self, meta: Any, children: list[Any]) -> Clause:
+        """ "Drop a ball into a tank": what it does, or has done to it, by what comes after "with"."""
+        lead = next(i for i, child in enumerate(children) if is_of(child, "COMMAND"))
+        by = next((i for i, child in enumerate(children) if is_of(child, "USING")), len(children))
+        action = Action(meant(children[lead]), self._words(meta))
+        things = phrases(children[lead + 1 : by])
+        places = [child for child in children[lead + 1 : by] if isinstance(child, Place)]
+        for place in self._given_on(things[-1:], places):
+            if place.phrase is None:
+                self._place(action, place)
+            else:
+                action.places.append(place)
+        if (action.particle or "") not in (*self.tokens.known.particles[action.verb], ""):
+            raise self.tokens.fail(children[lead].start_pos)
+        if action.verb == "fill" and not all(thing.filled for thing in things):
+            raise self.tokens.fail(children[lead].start_pos)
+        action.places += [Place("by", child, words=child.words) for child in children[by:] if isinstance(child, Phrase)]
+        action.places += [child for child in children[by:] if isinstance(child, Place)]
+        return Clause(things, [action])
+
+    def apposed(self, meta: Any, children: list[Any]) -> Clause:
+        """ "One red and the other blue"."""
+        tokens = [child for child in children[:-1] if isinstance(child, Token)]
+        which = next(token for token in tokens if is_of(token, "COUNT", "OTHER", "NTH"))
+        chosen = self._choice({"COUNT": "some", "OTHER": "other", "NTH": "nth"}[which.type], meta, tokens)
+        if which.type == "NTH":
+            chosen.nth = meant(which)
+        return Clause([chosen], [self.is_(meta, children)])
+
+    def chained(self, _meta: Any, children: list[Any]) -> tuple[Clause, ...]:
+        """ "On a table stands a lamp, and beside it a mug"."""
+        first = next(child for child in children if isinstance(child, Clause))
+        leads = [child for child in children if isinstance(child, Place)]
+        subjects = [child for child in children if isinstance(child, Phrase)]
+        verb = first.actions[0].verb
+        to = first.actions[0].places[0]
+        for lead in leads:  # "to the left of a barrel there is a crate, and to the right of it a pillar"
+            if to.preposition == lead.preposition == "side" and lead.phrase is not None and lead.phrase.part == "it":
+                lead.phrase = to.phrase
+        then = [
+            Clause([subject], [Action(verb, f"{lead.words} {subject.words}", places=[lead])])
+            for lead, subject in zip(leads, subjects, strict=True)
+        ]
+        return first, *then
+
+    def fronted(self, _meta: Any, children: list[Any]) -> Place:
+        """ "In a tank of water, …"."""
+        return next(child for child in children if isinstance(child, Place))
 
     def embedded(self, meta: Any, children: list[Any]) -> tuple[Clause, Clause]:
         """What the first clause ends with is where the things of the second are."""
         outer, lead, inner = children
         ends = [*outer.subjects, *(each for a in outer.actions for each in (a.target, *(p.phrase for p in a.places)))]
         last = [phrase for phrase in ends if phrase is not None][-1]
-        inner.within = Place(_meaning(lead), last, words=self._words(meta))
+        inner.within = Place(meant(lead), last, words=self._words(meta))
         return outer, inner
 
     def inverted(self, meta: Any, children: list[Any]) -> Clause:
-        """ "On the table stands a bottle"."""
-        subjects = [child for child in children if isinstance(child, Phrase)]
-        verb = "rest" if _is(children[1], "BE") else _meaning(children[1])
-        return Clause(subjects, [Action(verb, self._words(meta), places=[children[0]])])
+        """ "On the table stands a bottle", "on it there is a bottle"."""
+        subjects = phrases(children)
+        places = [child for child in children if isinstance(child, Place)]
+        said = next(child for child in children if is_of(child, "VERB", "BE"))
+        verb = "rest" if is_of(said, "BE") else meant(said)
+        return Clause(subjects, [Action(verb, self._words(meta), places=places)], inverted=True)
 
     def within(self, meta: Any, children: list[Any]) -> Place:
         phrase = next(child for child in children if isinstance(child, Phrase))
-        phrase.filled = phrase.filled or any(_is(child, "FILLED") for child in children)
-        return Place(_meaning(children[-1]), phrase, words=self._words(meta))
+        phrase.filled = phrase.filled or any(is_of(child, "FILLED") for child in children)
+        return Place(meant(children[-1]), phrase, words=self._words(meta))
 
     def link(self, _meta: Any, children: list[Any]) -> Any:
         return children[0]
 
     def breaks(self, _meta: Any, children: list[Any]) -> str:
-        if [str(child) for child in children if _is(child, "BREAK")] == ["with"]:
-            return "with"
-        return "stop" if any(_is(child, "BREAK") and str(child) in _STOPS for child in children) else "break"
+        marks = [child for child in children if is_of(child, "BREAK", "WITH")]
+        if len(marks) == 1 and (marks[0].type == "WITH" or str(marks[0]) == ":"):
+            return "with" if marks[0].type == "WITH" else "list"
+        return "stop" if any(is_of(child, "BREAK") and str(child) in _STOPS for child in children) else "break"
 
     def sep(self, _meta: Any, children: list[Any]) -> str:
         return "stop" if str(children[0]) in _STOPS else "break"
@@ -140,158 +190,9 @@ class _Clauses(Transformer):
 
     opening = joiners
 
-    # ---- things
-    def subject(self, _meta: Any, children: list[Any]) -> Phrase:
-        phrase: Phrase = children[0]
-        phrase.places = self._given_on([phrase], [child for child in children[1:] if isinstance(child, Place)])
-        return phrase
-
-    def _given_on(self, phrases: list[Phrase], places: list[Place]) -> list[Place]:
-        """The places, less those that follow a relative clause: "on a belt that runs at 1 m/s" is of the belt."""
-        kept: list[Place] = []
-        of = next((phrase for phrase in phrases if any(one.relative for one in phrase.clauses)), None)
-        for place in places:
-            if of is not None:
-                self._place(next(one for one in of.clauses if one.relative), place)
-                of.words += f" {place.words}"
-                continue
-            kept.append(place)
-            of = place.phrase if place.phrase is not None and any(o.relative for o in place.phrase.clauses) else None
-        return kept
-
-    def det(self, _meta: Any, children: list[Any]) -> Token:
-        return children[0]
-
-    def thing(self, meta: Any, children: list[Any]) -> Phrase:
-        if len(children) == 1 and isinstance(children[0], Phrase) and children[0].choice:
-            return children[0]
-        heads = [child for child in children if isinstance(child, Phrase) or _is(child, *_HEADS)]
-        head = heads[0] if heads else self._stuff(children)
-        phrase = head if isinstance(head, Phrase) else _phrase(head)
-        phrase.words = self._words(meta)
-        for child in children:
-            if _is(child, "THE", "ART", "POSS"):
-                phrase.definite = not _is(child, "ART")
-            elif isinstance(child, Action):
-                (phrase.owner or phrase if phrase.kind == "part" else phrase).clauses.append(child)
-            elif child is not head:
-                self._modify(phrase, child)
-        return phrase
-
-    def _stuff(self, children: list[Any]) -> Phrase:
-        """What a material alone names, as in "a stone" or "a marble"."""
-        head = [child for child in children if _is(child, "MATERIAL")][-1]
-        noun = self.tokens.known.stuff.get(_meaning(head))
-        if noun is None:
-            raise self.tokens.fail(head.end_pos)
-        if noun != "ground":
-            children.remove(head)
-        return Phrase(noun, "")
-
-    def _modify(self, phrase: Phrase, child: Any) -> None:
-        if phrase.kind == "part" and phrase.owner is not None:
-            phrase = phrase.owner  # "the edge of a table that is 0.8 m high"
-        if _is(child, "ING"):
-            phrase.clauses.append(Action(_meaning(child), str(child)))
-            return
-        token, changes = child if isinstance(child, tuple) else (child, _changes(child))
-        for name, value in changes.items():
-            given = phrase.measures if name in _MEASURES else phrase.__dict__
-            if given.get(name) not in (None, False, ()):
-                raise self.tokens.fail(token.start_pos)
-            given[name] = value
-
-    def size(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
-        axis = _meaning(children[1]) if len(children) > 1 else "length"
-        return children[0], {axis: _meaning(children[0])}
-
-    def sized(self, meta: Any, children: list[Any]) -> Any:
-        return self.size(meta, children) if _is(children[0], "LENGTH") else children[-1]
-
-    def said(self, _meta: Any, children: list[Any]) -> Any:
-        return children[-1]
-
-    def weighed(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
-        masses = tuple(_meaning(child) for child in children if _is(child, "MASS"))
-        return children[0], {"mass": masses[0]} if len(masses) == 1 else {"masses": masses}
-
-    def made(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
-        return children[0], {"material": _meaning(children[-1])}
-
-    owned = made
-
-    def measured(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
-        what, measure = _meaning(children[0]), children[1]
-        kind = {"mass": "MASS", "density": "DENSITY"}.get(what, "LENGTH")
-        if measure.type != kind:
-            raise self.tokens.fail(children[0].start_pos)
-        return children[0], {"length" if what == "edge" else what: _meaning(measure)}
-
-    def tilted(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
-        return children[0], {"angle": _meaning(children[1])}
-
-    def doing(self, meta: Any, children: list[Any]) -> Action:
-        whole = next((child for child in children if isinstance(child, Action)), None)
-        if whole is not None:
-            whole.relative = True
-            return whole
-        verb = next(child for child in children if _is(child, "ING"))
-        action = Action(_meaning(verb), self._words(meta), relative=True)
-        for place in (child for child in children if isinstance(child, Place)):
-            self._place(action, place)
-        return action
-
-    def nth(self, meta: Any, children: list[Any]) -> Phrase:
-        chosen = self._choice("nth", meta, children)
-        chosen.nth = next(_meaning(child) for child in children if _is(child, "NTH"))
-        return chosen
-
-    def some(self, meta: Any, children: list[Any]) -> Phrase:
-        return self._choice("some", meta, children)
-
-    def one(self, meta: Any, children: list[Any]) -> Phrase:
-        return self._choice("some", meta, children)
-
-    def other(self, meta: Any, children: list[Any]) -> Phrase:
-        return self._choice("other", meta, children)
-
-    def all(self, meta: Any, children: list[Any]) -> Phrase:
-        chosen = self._choice("all", meta, children)
-        return chosen.owner if chosen.owner is not None and chosen.owner.choice else chosen
-
-    def described(self, meta: Any, children: list[Any]) -> Phrase:
-        chosen = self._choice("described", meta, children)
-        child = children[1]
-        if _is(child, "COMPARED"):
-            chosen.part = _meaning(child)
-        elif not (_is(child, "COUNT") or (isinstance(child, Phrase))):
-            self._modify(chosen, child)
-        return chosen
-
-    def _choice(self, which: str, meta: Any, children: list[Any]) -> Phrase:
-        """Some of what was spoken of before."""
-        of = next((child for child in children if isinstance(child, Phrase)), None)
-        count = next((_meaning(child) for child in children if _is(child, "COUNT")), None)
-        return Phrase("choice", self._words(meta), definite=True, count=count, choice=which, owner=of)
-
-    def group(self, meta: Any, children: list[Any]) -> Phrase:
-        phrase = Phrase("group", self._words(meta), arrangement=_meaning(children[0]))
-        phrase.members = next((child for child in children if isinstance(child, Phrase)), None)
-        if phrase.members is not None and phrase.members.kind not in self.tokens.known.nouns:
-            raise self.tokens.fail(children[0].start_pos)
-        return phrase
-
-    def part(self, meta: Any, children: list[Any]) -> Phrase:
-        owner = next((child for child in children if isinstance(child, Phrase)), None)
-        side = next((_meaning(child) for child in children if _is(child, "DIRECTION")), None)
-        side = "other" if any(_is(child, "OTHER") for child in children) else side
-        named = next(_meaning(child) for child in children if _is(child, "PART"))
-        return Phrase("part", self._words(meta), part=named, owner=owner, choice=side or "")
-
-    # ---- what they do
     def does(self, meta: Any, children: list[Any]) -> Action:
-        verb = next(child for child in children if _is(child, "VERB", "ING"))
-        action = Action(_meaning(verb), self._words(meta))
+        verb = next(child for child in children if is_of(child, "VERB", "ING"))
+        action = Action(meant(verb), self._words(meta))
         action.target = next((child for child in children if isinstance(child, Phrase)), None)
         inner = [action.target] if action.target is not None else []
         for place in self._given_on(inner, [child for child in children if isinstance(child, Place)]):
@@ -303,108 +204,20 @@ class _Clauses(Transformer):
             raise self.tokens.fail(verb.start_pos)
         return action
 
-    def _place(self, action: Action, place: Place) -> None:
-        """Add a place to an action; "knocks over a stack" has a particle and a target."""
-        over = place.preposition in ("over", "down") and action.verb in ("knock", "topple", "push")
-        if over and action.target is None and place.phrase is not None:
-            action.particle, action.target = place.preposition, place.phrase
-        elif place.preposition == "bare" and action.particle is None:
-            action.particle = place.words
-        else:
-            action.places.append(place)
+    def negated(self, meta: Any, children: list[Any]) -> Action:
+        """ "Does not slide": what it does in place of that."""
+        verb = next(child for child in children if is_of(child, "VERB", "ING"))
+        instead = self.tokens.known.negated.get(meant(verb))
+        if instead is None:
+            raise self.tokens.fail(meta.start_pos)
+        action = Action("rest" if instead == "still" else instead, self._words(meta))
+        action.places = [child for child in children if isinstance(child, Place) and child.preposition != "bare"]
+        action.places += [Place("still", words=str(verb))] if instead == "still" else []
+        return action
 
     def stands(self, meta: Any, children: list[Any]) -> Action:
         places = self._given_on([], [child for child in children if isinstance(child, Place)])
         return Action("rest", self._words(meta), places=places)
 
-    def is_(self, meta: Any, children: list[Any]) -> Action:
-        """What a clause of its own says of a thing: "the ramp is at 20 degrees"."""
-        described = Phrase("described", self._words(meta))
-        self._modify(described, children[-1])
-        return Action("be", self._words(meta), target=described)
-
-    # ---- where
-    def at_thing(self, meta: Any, children: list[Any]) -> Place:
-        lead, phrase = children
-        if lead.type in ("AT", "FROM") and len(lead.split()) > 1:  # "at a height of the box"
-            raise self.tokens.fail(lead.start_pos)
-        key = _meaning(lead) if lead.type == "PREP" else str(lead)
-        return Place(key, phrase, words=self._words(meta))
-
-    def at_side(self, meta: Any, children: list[Any]) -> Place:
-        return Place("side", children[1], side=_meaning(children[0]), words=self._words(meta))
-
-    def at_offset(self, meta: Any, children: list[Any]) -> Place:
-        offset, side, phrase = children[-3:]
-        return Place("side", phrase, side=_meaning(side), length=_meaning(offset), words=self._words(meta))
-
-    def between(self, meta: Any, children: list[Any]) -> Place:
-        things = [child for child in children if isinstance(child, Phrase)]
-        return Place("between", things[0], things[1] if len(things) > 1 else None, words=self._words(meta))
-
-    def from_length(self, meta: Any, children: list[Any]) -> Place:
-        return Place("from", length=_meaning(children[1]), words=self._words(meta))
-
-    def at_speed(self, meta: Any, children: list[Any]) -> Place:
-        kind = "spin" if children[1].type == "SPIN" else "speed"
-        return Place(kind, value=_meaning(children[1]), words=self._words(meta))
-
-    def at_angle(self, meta: Any, children: list[Any]) -> Place:
-        return Place("angle", value=_meaning(children[1]), words=self._words(meta))
-
-    def for_time(self, meta: Any, children: list[Any]) -> Place:
-        return Place("time", value=_meaning(children[1]), words=self._words(meta))
-
-    def toward(self, meta: Any, children: list[Any]) -> Place:
-        return Place("toward", direction=_meaning(children[0]), words=self._words(meta))
-
-    def to_share(self, meta: Any, children: list[Any]) -> Place:
-        if _meaning(children[0]) != "to":
-            raise self.tokens.fail(children[0].start_pos)
-        return Place("share", value=round(_meaning(children[1]), 6), words=self._words(meta))
-
-    def up_to(self, meta: Any, children: list[Any]) -> Place:
-        return Place("up to", length=_meaning(children[1]), words=self._words(meta))
-
-    def so_far(self, meta: Any, children: list[Any]) -> Place:
-        return Place("way", length=_meaning(children[-1]), words=self._words(meta))
-
-    def surfaced(self, meta: Any, children: list[Any]) -> Place:
-        things = [*(child for child in children if isinstance(child, Phrase)), None, None]
-        value = float(_meaning(children[1]))
-        return Place(_meaning(children[0]), things[0], things[1], value=value, words=self._words(meta))
-
-    def so_often(self, meta: Any, children: list[Any]) -> Place:
-        return Place("often", value=_meaning(children[-1]), words=self._words(meta))
-
-    def at_spot(self, meta: Any, children: list[Any]) -> Place:
-        phrase = children[-1] if len(children) > 1 else None
-        return Place("spot", phrase, direction=_meaning(children[0]), words=self._words(meta))
-
-    def manner(self, meta: Any, children: list[Any]) -> Place:
-        lead = children[0]  # "stays there": where it is
-        return Place("still" if _is(lead, "THERE") else _meaning(lead), words=self._words(meta))
-
-    def alone(self, _meta: Any, children: list[Any]) -> Place:
-        return Place("bare", words=str(children[0]))
-
 
 _STOPS = (".", "!")
-_HEADS = ("NOUN", "FLUID", "GROUND", "PRONOUN")
-_MEASURES = ("x", "y", "z", "radius", "diameter", "mass", "density")
-
-
-def _phrase(head: Token) -> Phrase:
-    meaning = _meaning(head)
-    if isinstance(meaning, Named):
-        return Phrase(meaning.noun, "", plural=meaning.plural, filled=meaning.filled)
-    kind = {"FLUID": "water", "GROUND": "ground", "PRONOUN": "pronoun"}[head.type]
-    return Phrase(kind, "", part=str(head) if kind == "pronoun" else None)
-
-
-_FIELDS = {"COUNT": "count", "SCALE": "scale", "MATERIAL": "material", "COLOR": "color", "EDGES": "edges"}
-_FIELDS |= {"MASS": "mass", "ANGLE": "angle", "FILLED": "filled", "WEIGHT": "weight", "SHAPE": "shape", "NTH": "nth"}
-
-
-def _changes(token: Token) -> dict[str, Any]:
-    return {_FIELDS[token.type]: True if token.type == "FILLED" else _meaning(token)}

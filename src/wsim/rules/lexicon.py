@@ -43,7 +43,7 @@ BALL = "sport/ball"  # the catalogue's category of what is round and rolls
 _KEYS = {
     "noun": ("words", "plurals", "filled", "class", "primitive", "asset", "size", "top", "afloat", "length", "material",
              "lies"),
-    "verb": ("forms", "particles", "object"),
+    "verb": ("forms", "particles", "object", "commands", "negated"),
     "side": ("words", "predicate", "assume"),
     "group": ("words", "axis"),
 }  # fmt: skip
@@ -115,6 +115,9 @@ class Lexicon:
     colors: dict[str, tuple[float, float, float]] = field(default_factory=dict)
     particles: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of a verb; "" is none
     objects: set[str] = field(default_factory=set)  # verbs that take one
+    commands: dict[Words, str] = field(default_factory=dict)  # "drop" -> the verb
+    third: dict[Words, str] = field(default_factory=dict)  # "drops", of someone who does it
+    negated: dict[str, str] = field(default_factory=dict)  # what is done by what does not do it
     groups: dict[str, str] = field(default_factory=dict)  # arrangement -> axis
     stuff: dict[str, str] = field(default_factory=dict)  # a material's word -> the noun that it is by itself
 
@@ -160,6 +163,8 @@ def _lexicon(_assets: tuple[str, int]) -> Lexicon:
     _nouns(made, nouns)
     made.stuff |= nouns["stuff"]
     _others(made)
+    _measures(made, _data("quantities"))
+    _commands(made, _data("verbs"))  # last: what is a thing or does something, too, is that
     _robots(made)
     return made
 
@@ -241,6 +246,7 @@ def _quantities(made: Lexicon, data: dict[str, Any]) -> None:
 def _materials(made: Lexicon, data: dict[str, Any]) -> None:
     for name, fields in data["material"].items():
         material = Material(name=name, **{key: value for key, value in fields.items() if key != "words"})
+        made.materials[name] = material
         for word in fields["words"]:
             made.materials[word] = material
             made.add(word, "MATERIAL", word)
@@ -256,6 +262,25 @@ def _verbs(made: Lexicon, data: dict[str, Any]) -> None:
             made.objects.add(verb)
         for form in fields["forms"]:
             made.add(form, "VERB", verb)
+        if "negated" in fields:
+            made.negated[verb] = fields["negated"]
+
+
+def _measures(made: Lexicon, data: dict[str, Any]) -> None:
+    """What a length may be said to be after it: "10 cm diameter"."""
+    for noun, what in data["measure"].items():
+        made.add(noun, "MEASURE", what)
+
+
+def _commands(made: Lexicon, data: dict[str, Any]) -> None:
+    """What may be commanded, and what someone does."""
+    for verb, fields in data["verb"].items():
+        for form in fields.get("commands", ()):
+            made.commands[tuple(form.split())] = verb
+            made.add(form, "COMMAND", verb)
+            head, *rest = form.split()
+            made.third[(_plural(head), *rest)] = verb
+            made.add(" ".join((_plural(head), *rest)), "THIRD", verb)
 
 
 def _groups(made: Lexicon, data: dict[str, Any]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 from wsim.assets import get
 from wsim.errors import UserError
@@ -10,7 +11,7 @@ from wsim.rules.actions import MOVES, act, meet
 from wsim.rules.cast import Cast, Pour, Thing
 from wsim.rules.lexicon import lexicon
 from wsim.rules.phrases import Action, Clause, Phrase, Place
-from wsim.rules.places import CARRIED, common, do, stand, support
+from wsim.rules.places import CARRIED, UPRIGHT, common, do, put_inside, stand, support
 from wsim.rules.reader import EACH_OTHER, Reader
 from wsim.rules.tokens import NotUnderstood
 from wsim.rules.used import check_used
@@ -24,10 +25,20 @@ def understand(clauses: list[Clause]) -> Cast:
         UserError: the prompt contradicts itself.
     """
     reader = Reader()
-    for clause in clauses:
+    for clause in [each for one in clauses for each in _of_the_last(one)]:
         _clause(reader, clause)
     _settle(reader)
     return reader.cast
+
+
+def _of_the_last(clause: Clause) -> list[Clause]:
+    """ "A laptop on a desk and a chair stands behind it": that is said of the last alone, by what is named before."""
+    places = [place for action in clause.actions for place in action.places]
+    back = any(place.phrase is not None and place.phrase.part in ("it", "them") for place in places)
+    if len(clause.subjects) < 2 or not back:
+        return [clause]
+    named = replace(clause, subjects=clause.subjects[:-1], actions=[])
+    return [named, replace(clause, subjects=clause.subjects[-1:])]
 
 
 def _clause(reader: Reader, clause: Clause) -> None:
@@ -36,6 +47,7 @@ def _clause(reader: Reader, clause: Clause) -> None:
     subjects: list[Thing] = []
     scenery = []
     pending: list[Thing] = []
+    given: list[Thing] = []
     for phrase in clause.subjects:
         if reader.is_scenery(phrase):
             reader.scenery(phrase)
@@ -47,22 +59,28 @@ def _clause(reader: Reader, clause: Clause) -> None:
         subjects += found
         pending += found
         if clause.given and not clause.actions:
-            _given(reader, found, phrase)
+            _given(reader, [*given, *found] if _inside(phrase) else found, phrase)
+            given = [] if phrase.places else [*given, *found]
             continue
         if phrase.places:  # "a cork ball and an iron ball in a tank": both are in it
+            before = pending[: -len(found)] if found and not clause.given else []
+            if before and any(place.phrase is not None and place.phrase.part == "it" for place in phrase.places):
+                reader.last, pending = before[-1:], found  # "a table and a laptop on it"
             for thing in pending:
                 stand(reader, thing, phrase.places)
             pending = []
         for said in phrase.clauses:
             _together(reader, found, said)
+    if any(phrase.only for phrase in clause.subjects):
+        _only(reader, clause, subjects)
     if clause.within is not None:
         for thing in subjects:
             _within(reader, thing, clause.within)
     whole = [phrase.owner for phrase in clause.subjects if phrase.kind == "choice" and phrase.owner is not None]
     named = [phrase for phrase in whole if phrase.kind in lexicon().nouns]
     if named:
-        reader.spoken = [reader.thing(phrase) for phrase in named]
-    if any(phrase.kind not in ("choice", "pronoun", "part") for phrase in clause.subjects):
+        reader.spoken = [one for phrase in named for one in reader.now(reader.thing(phrase))]
+    if any(p.members is not None or p.kind not in ("choice", "pronoun", "part") for p in clause.subjects):
         reader.spoken, reader.chosen = [*subjects], []
     for number, action in enumerate(clause.actions):
         last = _last(reader, clause.actions[number - 1]) if action.relative and number else None
@@ -79,6 +97,19 @@ def _clause(reader: Reader, clause: Clause) -> None:
                     _say(reader, each, subjects)
     if subjects:
         reader.last = [thing for thing in subjects if thing in reader.cast.things] or reader.last
+
+
+def _only(reader: Reader, clause: Clause, things: list[Thing]) -> None:
+    """ "Only the cork floats": all else in the water does not, which has to be so where the prompt says it."""
+    verbs = [action.verb for action in clause.actions]
+    if len(verbs) != 1 or verbs[0] not in ("float", "sink"):
+        raise NotUnderstood([clause.words], "knows of things of which only some float or sink, not of this")
+    reader.cast.only += [(thing, verbs[0]) for thing in things]
+
+
+def _inside(phrase: Phrase) -> bool:
+    """Whether it is said to be in something, as what is named with it then is: "with a ball and a brick in it"."""
+    return any(place.preposition in ("in", "inside") for place in phrase.places)
 
 
 def _given(reader: Reader, things: list[Thing], phrase: Phrase) -> None:
@@ -139,6 +170,11 @@ def _together(reader: Reader, subjects: list[Thing], action: Action) -> None:
     if agents and action.target is None and action.verb in PASSIVE:
         _by(reader, subjects, action, agents[0])
         return
+    if len(subjects) > 1 and all(thing.count == 1 for thing in subjects):
+        action = _arranged(reader, subjects, action)
+    if action.verb == "hold" and action.target is not None and action.target.kind != "water":
+        _hold(reader, subjects, action)
+        return
     back = any(place.phrase is not None and place.phrase.kind == "pronoun" for place in action.places)
     if back and action.verb in ("roll", "slide", "go") and any(thing.noun.family == "solid" for thing in subjects):
         subjects = [thing for thing in subjects if thing.noun.family == "solid"]  # "a ramp, and a ball rolls down it"
@@ -146,6 +182,8 @@ def _together(reader: Reader, subjects: list[Thing], action: Action) -> None:
         carrier = thing.support if thing.support is not None and thing.support.noun.family == "turntable" else None
         if action.verb == "run" and carrier is not None:
             thing = carrier
+        if action.verb == "carry" and action.target is None and thing.noun.family == "solid":
+            action = replace(action, verb="ride")  # "is carried to the end"
         if action.verb in ("move", "run") and thing.noun.family == "solid" and action.target is None:
             action = replace(action, verb="roll" if thing.round else "slide")
         act(reader, thing, action)
@@ -162,6 +200,36 @@ def _by(reader: Reader, subjects: list[Thing], action: Action, agent: Place) -> 
     for thing in reader.subjects(agent.phrase, []):
         places = [place for place in action.places if place is not agent]
         act(reader, thing, replace(action, target=target, places=places))
+
+
+def _arranged(reader: Reader, things: list[Thing], action: Action) -> Action:
+    """Several that are named one by one, in a stack or a row: what is left to say of each."""
+    rows = [p for p in action.places if p.phrase is not None and p.phrase.kind == "group" and not p.phrase.members]
+    stacked = action.verb == "stack" or any(place.preposition == "stacked" for place in action.places)
+    arranged = {place.phrase.arrangement for place in rows if place.phrase is not None}
+    if stacked or arranged == {"stack"}:
+        reader.cast.assume(things[0].words, "at the bottom", "the prompt does not say which is on which")
+        for lower, upper in pairwise(things):
+            support(reader, upper, lower)
+            do(upper, "rest")
+        places = [place for place in action.places if place not in rows and place.preposition != "stacked"]
+        stand(reader, things[0], places)
+        do(things[0], "rest")
+        return replace(action, verb="rest", places=[])
+    if action.verb == "rest" and arranged == {"row"}:
+        reader.cast.assume(things[0].words, "in a row from right to left", "the prompt does not say along which line")
+        return replace(action, places=[place for place in action.places if place not in rows])
+    return action
+
+
+def _hold(reader: Reader, subjects: list[Thing], action: Action) -> None:
+    """ "A bucket holds three stones": they are in it."""
+    if len(subjects) != 1 or subjects[0].noun.family != "vessel" or action.target is None or action.places:
+        words = " ".join([*(thing.words for thing in subjects), action.words])
+        raise NotUnderstood([words], "knows of a bowl or a bucket that holds things, but not this")
+    for thing in reader.subjects(action.target, []):
+        put_inside(reader, thing, subjects[0])
+        do(thing, "rest")
 
 
 def _within(reader: Reader, thing: Thing, place: Place) -> None:
@@ -203,9 +271,8 @@ def _say(reader: Reader, phrase: Phrase, subjects: list[Thing]) -> None:
             act(reader, one, said)
 
 
-PASSIVE = ("hit", "knock", "topple", "push", "touch")
+PASSIVE = ("hit", "knock", "topple", "push", "touch", "carry")
 FURNITURE = "furniture"  # of the catalogue's categories: what stands beside a table, not on it
-UPRIGHT = ("wall", "post")  # on which nothing is put
 _ACTS = ("solid", "belt", "turntable", "pendulum", "seesaw", "robot", "vehicle")
 
 
@@ -218,6 +285,8 @@ def _of_scenery(reader: Reader, clause: Clause, scenery: list[Phrase], subjects:
         return True
     if action.verb == "hold":
         held = action.target
+        if held is not None and held.kind != "water" and not scenery:
+            return False
         if subjects or held is None or held.kind != "water" or any(phrase.kind != "tank" for phrase in scenery):
             raise NotUnderstood([clause.words], "knows only of a tank that holds water, not of this")
         reader.scenery(held)
@@ -261,6 +330,7 @@ def _settle(reader: Reader) -> None:
     """Give each thing whose place is open the one that the rest of the scene leaves for it."""
     for thing in [one for one in reader.cast.things if one.count > 1 and one.noun.family in _SINGLE]:
         reader.split(thing)
+    _others(reader.cast)
     for thing in reader.cast.things:
         _share_table(thing)
         check_used(thing, struck=any(one.target is thing for one in reader.cast.things))
@@ -277,6 +347,15 @@ def _settle(reader: Reader) -> None:
     _check_water(reader.cast)
     if not reader.cast.things and not reader.cast.wet and reader.cast.pour is None:
         raise NotUnderstood(["the prompt"], "found nothing to build in")
+
+
+def _others(cast: Cast) -> None:
+    """Let all else in the water do the other than what only some do."""
+    for verb in {verb for _, verb in cast.only}:
+        alone = {id(thing) for thing, one in cast.only if one == verb}
+        for thing in cast.things:
+            if id(thing) not in alone and thing.place == "water":
+                do(thing, {"float": "sink", "sink": "float"}[verb])
 
 
 def _check_water(cast: Cast) -> None:

@@ -35,6 +35,7 @@ class Phrase:
     weight: float | None = None  # against the usual: what is heavy is above 1
     shape: tuple[str, float] | None = None  # the axis along which it is larger than usual, and how much: "tall"
     clauses: list[Action] = field(default_factory=list)  # "that sinks", "floating"
+    only: bool = False  # "only the cork"
     filled: bool = False  # a container that was said to hold water
     places: list[Place] = field(default_factory=list)
 
@@ -77,6 +78,7 @@ class Clause:
 
     subjects: list[Phrase] = field(default_factory=list)
     actions: list[Action] = field(default_factory=list)
+    inverted: bool = False  # "on a table stands a lamp": its things come last
     given: bool = False  # after "with": what the things before have
     within: Place | None = None  # of "a tank in which": where all of them are
 

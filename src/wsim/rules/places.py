@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from wsim.assets import get
 from wsim.errors import UserError
 from wsim.rules.cast import Beside, Thing
 from wsim.rules.lexicon import lexicon
@@ -11,8 +12,12 @@ from wsim.rules.tokens import NOT_IN_THIS_ORDER, NotUnderstood
 
 SURFACES = {"friction": 2.0, "restitution": 1.0}  # what of a surface may be said, and its most
 MANNERS = ("head_on", "from_rest", "still", "together", "upright", "freely", "to_and_fro", "again", "level", "in_turn",
-           "beside", "on_side", "stacked")  # fmt: skip
+           "beside", "on_side", "stacked", "slowly", "quickly", "below")  # fmt: skip
 CARRIED = ("solid", "vessel")  # families of what may stand on something
+UPRIGHT = ("wall", "post")  # on which nothing is put, and over which things are thrown
+MOST_INSIDE = 9  # things in a vessel
+AT_RIM = 0.01  # above a vessel, of what comes to lie in it beside others [m]
+FURNITURE = "furniture"  # of the catalogue's categories
 ROOMY = ("table", "desk", "workbench")  # what has room under it
 SIDES = ("LEFT-OF", "RIGHT-OF", "FRONT-OF", "BACK-OF")
 
@@ -23,9 +28,10 @@ def stand(reader: Reader, thing: Thing, places: list[Place]) -> None:
         if common(reader, thing, place):
             continue
         at = place.phrase
+        across = place.words.startswith("across") and thing.noun.primitive == "box"  # "a plank lies across two bricks"
         if (
             place.length is not None
-            or place.preposition not in ("in", "inside", "on", "at", "into", "onto")
+            or place.preposition not in ("in", "inside", "on", "at", "into", "onto", *(("along",) if across else ()))
             or at is None
         ):
             raise NotUnderstood([f"{thing.words} {place.words}"], "knows these words, but cannot place them")
@@ -45,7 +51,13 @@ def _stand_at(reader: Reader, thing: Thing, place: Place, at: Phrase) -> None:
         if at.kind == "pronoun" and (found.round or found.rod is not None):
             # Nothing stands on a ball, or on what hangs: it is what that is on, or above.
             found = found.path or found.support or found
-        if place.preposition in ("in", "inside", "into"):
+        if part(at) == "middle" and found.noun.family == "turntable":
+            thing.side = "middle"
+        inside = place.preposition in ("in", "inside", "into")
+        vessels = reader.cast.family("vessel")
+        if inside and at.kind == "pronoun" and found.noun.family != "vessel" and len(vessels) == 1:
+            found = vessels[0]
+        if inside and not (part(at) and found.noun.family != "vessel"):
             put_inside(reader, thing, found)
         elif found.noun.family in ("rod", "rope"):
             hang(reader, thing, found)
@@ -77,6 +89,8 @@ def common(reader: Reader, thing: Thing, place: Place) -> bool:
         _between(reader, thing, place)
     elif place.preposition == "time":
         reader.cast.duration = place.value
+    elif place.preposition == "after":
+        thing.delay = place.value
     elif place.preposition == "speed":
         thing.speed = place.value
     elif place.preposition == "spin":
@@ -136,6 +150,8 @@ def _beside(reader: Reader, thing: Thing, place: Place) -> None:
     assert place.side is not None and place.phrase is not None
     predicate = place.side.predicate
     other = where(reader, place.phrase, thing)
+    if other == "water" and place.phrase.kind == "pronoun" and predicate != "SPAWNED-ABOVE":
+        other = reader.it(place.phrase, thing)  # "a stone is dropped next to it": to what floats
     if predicate == "SPAWNED-ABOVE":
         _above(reader, thing, place, other)
         return
@@ -157,6 +173,9 @@ def _beside(reader: Reader, thing: Thing, place: Place) -> None:
         return
     if other.count > 1 and not other.group:
         raise NotUnderstood([place.phrase.words], "cannot tell which of them this is")
+    on = other.support
+    if place.phrase.kind == "pronoun" and on is not None and on.noun.family == "furniture" and _furniture(thing):
+        other = on  # "a laptop on a desk and a chair stands behind it"
     if "water" in (thing.place, other.place) and place.side.key == "next_to":
         for one in (thing, other):
             put(one, "water")
@@ -171,6 +190,12 @@ def _beside(reader: Reader, thing: Thing, place: Place) -> None:
         put(thing, "ground")
         put(other, "ground")
         do(thing, "rest")
+
+
+def _furniture(thing: Thing) -> bool:
+    """Whether it is the catalogue's furniture, which stands beside a table, not on it."""
+    asset = get(thing.noun.asset) if thing.noun.asset is not None else None
+    return asset is not None and asset.category.startswith(FURNITURE)
 
 
 def _above(reader: Reader, thing: Thing, place: Place, other: str | Thing) -> None:
@@ -274,9 +299,16 @@ def put_inside(reader: Reader, thing: Thing, other: Thing) -> None:
     """Put a thing in a vessel."""
     if other.noun.family != "vessel" or thing.noun.family != "solid" or other.count > 1:
         raise NotUnderstood([f"{thing.words} in {other.words}"], "puts things in a bowl or a bucket, but not this:")
-    if thing.count > 1 or any(one is not thing and one.inside is other for one in reader.cast.things):
-        raise UserError(f"{other.words!r}: the builtin planner puts one thing in it, not more")
+    held = thing.count + sum(one.count for one in reader.cast.things if one.inside is other and one is not thing)
+    if thing.group or held > MOST_INSIDE:
+        raise UserError(f"{other.words!r}: the builtin planner puts up to {MOST_INSIDE} things in it, side by side")
     thing.inside = other
+    if held > 1:
+        for one in {*(one for one in reader.cast.things if one.inside is other), thing}:
+            if "drop" not in one.does:
+                do(one, "drop")
+                one.drop_height = AT_RIM if one.drop_height is None else one.drop_height
+                reader.cast.assume(one.words, "let go at the rim", "from there it settles among the others")
     put(thing, "ground")
     put(other, "ground")
 

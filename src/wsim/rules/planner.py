@@ -38,6 +38,7 @@ from wsim.rules.scenes.pendulum import build_pendulums
 from wsim.rules.scenes.pour import build_pour
 from wsim.rules.scenes.seesaw import build_seesaws
 from wsim.rules.scenes.tank import build_tank
+from wsim.rules.scenes.timed import hold
 from wsim.rules.steps import steps
 from wsim.rules.tokens import NotUnderstood
 
@@ -57,6 +58,7 @@ def plan(prompt: str) -> Plan:
     """
     cast = understand(parse(prompt))
     scene = _scene(cast)
+    hold(cast, scene)
     scene.duration = max([scene.duration, *(hung.duration for hung in scene.hung)])
     scene.frame_rate = max([scene.frame_rate, *(hung.frame_rate for hung in scene.hung)])
     duration = _duration(cast, scene)
@@ -71,7 +73,8 @@ def plan(prompt: str) -> Plan:
     joined = {name for joint in scene.joints for name in (joint.child, joint.parent) if name is not None}
     placed = layout(Plan(objects=themselves(scene.objects, scene.names, cast, joined), **common))
     _hang(scene, placed, cast)
-    whole = set_down(Plan(objects=[*placed.objects, *scene.posed], joints=scene.joints, **common))
+    ties = {"joints": scene.joints, "cords": scene.cords, "schedules": scene.schedules}
+    whole = set_down(Plan(objects=[*placed.objects, *scene.posed], **ties, **common))
     return tied(
         Plan.model_validate(
             {
@@ -159,8 +162,6 @@ def _note_what_is_common(cast: Cast, prompt: str, duration: float, scene: Part) 
         what = "the way, and time" if scene.cameras else "time"
         cast.assume("scene", f"{duration:g} s long", f"{what} to come to rest; the prompt gives no duration")
     if "then" in words:
-        cast.assume(
-            "scene", "everything starts at once", "'then' gives no time, and the builtin planner schedules nothing"
-        )
+        cast.assume("scene", "everything starts at once", "'then' gives no time, as 'after two seconds' does")
     views = ", ".join(camera.name for camera in scene.cameras) or "side and top"
     cast.assume("cameras", views, "the prompt names no view")

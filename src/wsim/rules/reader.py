@@ -25,6 +25,7 @@ class Reader:
         self.spoken: list[Thing] = []  # among which "the first" or "the other" chooses
         self.chosen: list[Thing] = []  # by the choices so far
         self.named: dict[int, Thing] = {}  # what a phrase was found to name, by identity
+        self.singles: dict[int, list[Thing]] = {}  # what a thing that was several has become, by identity
         self.kept: list[Phrase] = []  # made on the way: their identity must stay theirs
         self.tanks: list[Phrase] = []
         self.struck: Thing | None = None  # the stack that was hit last
@@ -160,6 +161,8 @@ class Reader:
                 raise NotUnderstood([phrase.words], "cannot tell which of them this is")
             if known:
                 return known[0]
+        if phrase.kind in ("things", "one"):
+            raise NotUnderstood([phrase.words], "needs to be told, after a colon, what this is")
         described = phrase
         if phrase.kind == "group":
             _check_adjectives(replace(phrase, shape=None, clauses=[]))
@@ -168,8 +171,12 @@ class Reader:
                     [phrase.words], "has to be told what this is made of, as in 'a stack of five boxes'"
                 )
             described = phrase.members
+        stacked = [said for said in described.clauses if said.verb == "stack" and not said.places]
+        described.clauses = [said for said in described.clauses if said not in stacked]  # "two stacked crates"
         thing = Thing(described, self._count(described, phrase.kind == "group"), arrangement=phrase.arrangement)
         thing.phrase.words = phrase.words
+        if stacked and thing.count > 1:
+            thing.arrangement = "stack"
         if thing.kind == "domino" and thing.count > 1:
             thing.arrangement = thing.arrangement or "row"
         if phrase.kind == "group" and thing.noun.family != "solid":
@@ -230,11 +237,18 @@ class Reader:
             among = [thing for thing in self.cast.things if thing.kind == kind.kind]
         else:
             among = self.spoken
+        if phrase.members is not None:
+            among = [one for one in self.cast.things if one.kind == phrase.members.kind] or [self.thing(phrase.members)]
+        among = [now for one in among for now in self.now(one)]
         whole = phrase.choice == "all"
         found: list[Thing] = []
         for thing in among:
             found += [thing] if whole or thing.count == 1 or thing.group else self.split(thing)
         return found
+
+    def now(self, thing: Thing) -> list[Thing]:
+        """What a thing that was named is by now: itself, or the single things that it was split into."""
+        return self.singles.get(id(thing), [thing])
 
     def split(self, thing: Thing) -> list[Thing]:
         """Single things in place of one that is several."""
@@ -247,13 +261,14 @@ class Reader:
             singles.append(one)
         at = self.cast.things.index(thing)
         self.cast.things[at : at + 1] = singles
+        self.singles[id(thing)] = singles
         for known in (self.spoken, self.last):
             if thing in known:
                 known[:] = [new for old in known for new in (singles if old is thing else [old])]
         return singles
 
 
-_ENDED = ("seesaw", "belt", "furniture", "ramp")  # what has ends, edges and a top
+_ENDED = ("seesaw", "belt", "turntable", "furniture", "ramp")  # what has ends, edges and a top
 
 
 def _described(among: list[Thing], phrase: Phrase) -> list[Thing]:

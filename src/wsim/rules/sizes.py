@@ -10,6 +10,7 @@ from wsim.rules.lexicon import Noun, lexicon
 from wsim.rules.materials import material_named
 
 _FLOATING_RADIUS = 0.09  # of a ball that is lighter than water: it must draw more than a particle or two [m]
+ROW_SHARE = 0.3  # of a vessel's mouth, of each of three in a row across it
 _PLAY = 0.8  # of a vessel's width, which what is put in it takes up at most
 ROW_ROOM = 0.85  # of a table's depth, which a row of dominoes takes up at most
 _LANDING = 0.6  # the same of what comes down in it from aside
@@ -23,7 +24,8 @@ def material_of(thing: Thing, cast: Cast) -> Material:
     word = thing.phrase.material
     if word is None:
         word = _by_weight(thing) or thing.noun.material or _default_material(thing)
-        cast.assume(thing.words, f"of {word}", "the prompt names no material", "material", word)
+        asked = (word,) in lexicon().entries  # what a prompt cannot name is no answer either
+        cast.assume(thing.words, f"of {word}", "the prompt names no material", *(("material", word) if asked else ()))
     elif word == "metal":
         cast.assume(thing.words, "of steel", "the prompt says metal, not which")
     material = material_named(word)
@@ -86,7 +88,10 @@ def size_of(thing: Thing, material: Material, water_density: float, cast: Cast) 
     vessel = thing.inside or thing.into
     if vessel is not None and noun.asset is None:  # what the catalogue has is as large as it is
         scaled = tuple(edge * (phrase.scale or 1.0) for edge in size)
-        fitting = _fitting(scaled, _mouth(vessel.noun), _PLAY if thing.into is None else _LANDING)
+        held = sum(one.count for one in cast.things if one.inside is vessel)
+        share = ROW_SHARE if held > 1 else 1.0
+        room = tuple(edge * share for edge in mouth(vessel.noun))
+        fitting = _fitting(scaled, room, _PLAY if thing.into is None else _LANDING)
         why = why if fitting == scaled else f"so that it goes into {vessel.words}"
         size = tuple(edge / (phrase.scale or 1.0) for edge in fitting)
     if noun.key == "domino" and phrase.length is None:
@@ -108,7 +113,7 @@ def size_of(thing: Thing, material: Material, water_density: float, cast: Cast) 
     return size
 
 
-def _mouth(noun: Noun) -> tuple[float, ...]:
+def mouth(noun: Noun) -> tuple[float, ...]:
     """The room in a vessel [m]: a catalogue's own is round, and narrower than the box round it."""
     asset = get(noun.asset) if noun.asset is not None else None
     return noun.size if asset is None or asset.hollow is None else tuple(asset.hollow.size)
@@ -140,7 +145,7 @@ def _roomy(thing: Thing, size: tuple[float, ...], cast: Cast, why: str) -> tuple
     widest = max(
         (2 * one.noun.size[0] if len(one.noun.size) < 3 else max(one.noun.size[:2]) for one in loads), default=0
     )
-    share = widest / (_PLAY * min(_mouth(thing.noun)[:2]))
+    share = widest / (_PLAY * min(mouth(thing.noun)[:2]))
     if share <= 1.0:
         return size, why
     factor = widest / (_PLAY * min(size[:2]))

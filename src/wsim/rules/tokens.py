@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
+from collections.abc import Sequence
 from typing import Any
 
 from lark import Token
@@ -48,12 +49,12 @@ class Tokens:
     """The prompt's words, and the tokens that they make."""
 
     def __init__(self, prompt: str, known: Lexicon) -> None:
-        self.text = " ".join(re.sub(r"(?<=\w)-(?=\w)", " ", prompt.lower()).split())
+        self.text = " ".join(re.sub(r"(?<=\w)-(?=\w)", " ", _in_full(prompt.lower())).split())
         self.known = known
         self.spans = [match.span() for match in _WORD.finditer(self.text)]
         self.words = [self.text[a:b] for a, b in self.spans]
 
-    def all(self) -> list[Token]:
+    def all(self) -> list[Meant]:
         """The tokens.
 
         Raises:
@@ -63,7 +64,7 @@ class Tokens:
         unknown = [w for w in dict.fromkeys(self.words) if not w[0].isdigit() and w not in vocabulary]
         if unknown:
             raise NotUnderstood(unknown, UNKNOWN)
-        tokens: list[Token] = []
+        tokens: list[Meant] = []
         at = 0
         while at < len(self.words):
             found = self._edges(at) or self._measure(at) or self._often(at) or self._entry(at)
@@ -75,10 +76,23 @@ class Tokens:
                 token.type, token.meaning = "DIMENSION", token.meaning[0]  # "1 m long"
             if token.type == "SIDE" and tokens and tokens[-1].type == "LENGTH":
                 tokens[-1].type = "OFFSET"  # "20 cm behind": the distance, not a size
+            last = tokens[-1].type if tokens else ""
+            if token.type == "COUNT" and str(token) == "one" and last in _LOOKS:
+                token.type = "ONE"  # "a small one"
+            if token.type == "MEASURE" and last == "LENGTH":
+                token.type = "DIMENSION"  # "of 10 cm diameter"
+            if token.type in ("NOUN", *_LOOKS) and last == "VERB" and str(tokens[-1]) in _DONE and len(tokens) > 1:
+                tokens[-1].type = "ING" if tokens[-2].type in ("COUNT", "ART", "THE", *_LOOKS) else "VERB"
+            if token.type == "LENGTH" and (last == "FOR" or last == "AFTER"):
+                token.type = "WAY"  # "for 40 m"
+            if token.type == "LENGTH" and last == "NOUN" and any(_is_drive(one) for one in tokens):
+                token.type = "WAY"  # "drive a truck 50 m"
+            if token.type in ("BREAK", "JOIN") and tokens and str(tokens[-1]) in _BELOW:
+                tokens[-1].type, tokens[-1].meaning = "MANNER", "below"  # "falls into a bucket below."
             if token.type == "LENGTH" and (_drives(tokens) or _falls(tokens)):
                 token.type = "WAY"  # "drives 100 m": how far, not the size of what follows
             tokens.append(token)
-        return tokens
+        return _commanded(tokens, self.known)
 
     def fail(self, position: int) -> NotUnderstood:
         """The words from a position of the text on, not understood in this order."""
@@ -149,6 +163,60 @@ class Tokens:
         return self._token("EDGES", tuple(float(here[i]) * factor for i in (0, 2, 4)), at, 6)
 
 
+_LOOKS = ("SCALE", "COLOR", "MATERIAL", "WEIGHT", "SHAPE")
+_DONE = ("stacked", "piled", "submerged")  # what is said before a thing: "two stacked crates"
+_STRUCK = ("hit", "knock", "topple", "push")  # verbs of what one does with something
+_BELOW = ("below", "underneath", "beneath")
+_SHORT = (
+    (r"[\u2018\u2019]", "'"),
+    (r"\b(there|it|that|what|here)'s\b", r"\1 is"),
+    (r"\b(they|we|you)'re\b", r"\1 are"),
+    (r"\bi'd\b", "i would"),
+    (r"\blet's\b", "let"),
+    (r"\b(is|are|was|were|does|do|did)n't\b", r"\1 not"),
+)
+
+
+def _in_full(text: str) -> str:
+    """ "There's", "doesn't": in full."""
+    for short, full in _SHORT:
+        text = re.sub(short, full, text)
+    return text
+
+
+def _commanded(tokens: list[Meant], known: Lexicon) -> list[Meant]:
+    """The tokens, with what is commanded as such: a verb's own form where a clause starts, or where "someone" does it.
+
+    "And" goes on commanding only in a sentence that commands: "two balls roll and hit a box" does not.
+    """
+    commands, opens, verb = False, True, ""
+    for at, token in enumerate(tokens):
+        before = tokens[at - 1].type if at else "BREAK"
+        after = tokens[at + 1].type if at + 1 < len(tokens) else "BREAK"
+        words = tuple(str(token).split())
+        if before in ("BREAK", "WITH"):
+            commands, opens = commands and str(tokens[at - 1]) == "with", True
+        starts = before in ("BREAK", "SHOW") or (before in ("JOIN", "COMMA") and (commands or opens))
+        if before == "MOTOR" and token.type == "VERB" and token.meaning == "run":
+            tokens[at - 1].type, token.type = "SHOW", "COMMAND"
+        elif before == "ACTOR" and words in {**known.third, **known.commands}:
+            token.type, token.meaning = "COMMAND", {**known.third, **known.commands}[words]
+        elif starts and words in known.commands and after not in ("OF", "BREAK", "JOIN"):
+            token.type, token.meaning, commands = "COMMAND", known.commands[words], True
+            verb = token.meaning
+        elif token.type == "WITH" and commands and verb in _STRUCK and after != "FORCE":
+            token.type = "USING"  # "knock a tower over with a ball"
+        elif token.type in ("VERB", "ING", "BE", "COMMAND"):
+            opens = False
+    for token in tokens:
+        token.type = "SHOW" if token.type == "ACTOR" else token.type
+    return tokens
+
+
+def _is_drive(token: Token) -> bool:
+    return token.type in ("VERB", "COMMAND") and getattr(token, "meaning", None) == "drive"
+
+
 def _named(value: Any) -> str:
     return value.noun if isinstance(value, Named) else ""
 
@@ -158,12 +226,12 @@ def _long_unit(known: Lexicon, words: list[str]) -> bool:
     return known.units.get(tuple(words), ("",))[0] in ("LENGTH", "MASS") and len(words[0]) > 2
 
 
-def _falls(tokens: list[Token]) -> bool:
+def _falls(tokens: Sequence[Token]) -> bool:
     """Whether what comes next is how far something falls: "falls 2 m"."""
     return bool(tokens) and tokens[-1].type == "VERB" and getattr(tokens[-1], "meaning", None) in ("fall", "drop")
 
 
-def _drives(tokens: list[Token]) -> bool:
+def _drives(tokens: Sequence[Token]) -> bool:
     """Whether what comes next is how far something drives: "drives", "drives forward for"."""
     last = next((token for token in reversed(tokens) if token.type not in ("FOR", "DIRECTION")), None)
     return last is not None and last.type in ("VERB", "ING") and getattr(last, "meaning", None) == "drive"

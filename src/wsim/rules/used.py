@@ -29,6 +29,10 @@ def check_used(thing: Thing, struck: bool) -> None:
     for beside in thing.beside:
         if beside.loose and (posed(thing) or posed(beside.ref)):
             beside.predicate = "beside"  # the parts of a scene are side by side
+    for manner in {"slowly", "quickly"} & thing.manners:
+        moves = {"roll", "slide", "push", "drive"} & {*thing.does}
+        if thing.speed is not None or thing.path is not None or thing.off or thing.into or not moves:
+            raise NotUnderstood([manner], "lets what goes along the ground do it")
     for given, problem in (*_adjectives(thing), *_manners(thing, struck), *_bearing(thing)):
         if given:
             raise NotUnderstood([thing.words], problem)
@@ -51,6 +55,7 @@ def _bearing(thing: Thing) -> tuple[tuple[bool, str], ...]:
         (goes, "puts nothing on what moves, hangs, or is on a ramp, a belt, a turntable or a seesaw, such as"),
         (thing.off and below is None and thing.path is None, "needs to be told off what this goes"),
         (thing.off and table and "drop" in does, "lets things roll or slide off a table, but not drop on it and leave"),
+        (hangs and ("meet" in does or thing.meets is not None), "lets what hangs swing into a thing, but not this:"),
         (hangs and below is not None and not _hangs_above(thing), "hangs one thing, which hits nothing, above a table"),
     )
 
@@ -71,11 +76,31 @@ def _adjectives(thing: Thing) -> tuple[tuple[bool, str], ...]:
         (phrase.angle is not None and family not in ("ramp", "pendulum"), "inclines a ramp, but not this"),
         (phrase.filled, "fills a tank, a bucket or a bowl with water, but not this"),
         (thing.speed is not None and not moving and not carries, "needs to be told how this moves"),
+        (
+            thing.force is not None and bool(thing.round or thing.target or thing.path or thing.off or thing.speed),
+            "pushes with a force what slides on the level, and hits nothing, but not this",
+        ),
+        (thing.delay is not None and not _waits(thing), "lets go after a time, or pushes with a force, but not so"),
         (thing.spin is not None and family != "turntable", "turns a turntable at a rate, but not this"),
         (bool(_sides(thing)) and bool(placed or ill), "cannot place this beside something, with what else it does"),
         (family == "pendulum" and strange, "cannot give a pendulum this measure"),
         (phrase.scale is not None and phrase.length is not None, "takes a size or a length, not both"),
         ({"mass", "density"} <= set(phrase.measures), "takes a mass or a density, not both"),
+    )
+
+
+def _waits(thing: Thing) -> bool:
+    """Whether it may be held, and let go or pushed later: nothing else holds it or has set it going."""
+    free = thing.support is None or not posed(thing)
+    goes = bool({"throw", "swing", "meet", "roll", "slide"} & {*thing.does}) and thing.path is None
+    return thing.force is not None or (
+        thing.noun.family == "solid"
+        and free
+        and not goes
+        and ("drop" in thing.does or thing.path is not None)
+        and not thing.group
+        and thing.rod is None
+        and thing.speed is None
     )
 
 
@@ -93,7 +118,9 @@ def _manners(thing: Thing, struck: bool) -> tuple[tuple[bool, str], ...]:
         ("to_and_fro" in said and not {"swing", "bounce"} & does, "lets what swings go to and fro, but not this"),
         ("again" in said and "bounce" not in does, "lets what bounces do it again, but not this"),
         ("level" in said and "seesaw" not in (family, on), "keeps a seesaw level, but not this"),
+        ("below" in said and thing.into is None, "lets things fall into a vessel below them, but not this:"),
         ("in_turn" in said and "topple" not in does, "lets things fall one after another, but not this"),
         (thing.times is not None and "bounce" not in does, "counts bounces, but not this"),
+        (thing.times is not None and "throw" in does, "counts bounces of what falls, not of what is thrown:"),
         (flat and on != "seesaw", "puts things at the ends of a seesaw, but not of this"),
     )  # fmt: skip

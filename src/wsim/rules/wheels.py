@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from wsim.rules.cast import Thing
 from wsim.rules.phrases import Action, Phrase, Place
 from wsim.rules.places import common, do, put, where
@@ -42,6 +44,9 @@ def drive(reader: Reader, thing: Thing, action: Action) -> None:
 def cross(reader: Reader, thing: Thing, action: Action) -> None:
     """Drive over a floating block, between two docks."""
     over = where(reader, action.target) if action.target is not None else None
+    if isinstance(over, Thing) and over.noun.family == "land" and action.target is not None:
+        drive(reader, thing, replace(action, places=[Place("over", action.target, words=action.words), *action.places]))
+        return
     if thing.noun.family != "vehicle" or not isinstance(over, Thing) or over.noun.family != "pontoon":
         raise NotUnderstood([f"{thing.words} {action.words}"], "lets a vehicle cross a floating block, but not this:")
     for place in action.places:

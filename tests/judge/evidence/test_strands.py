@@ -48,3 +48,17 @@ def test_what_is_fixed_for_good_is_one_thing(tmp_path: Path) -> None:
     assert sorted([body.prim[7:] for body in thing] for thing in found) == [
         ["arm"], ["beam"], ["bob"], ["door", "handle"], ["load"]
     ]  # fmt: skip
+
+
+def test_a_cart_is_one_thing_with_its_wheels(tmp_path: Path) -> None:
+    """From the side its far wheels are behind the others; two cranks that differ are two things more."""
+    scene = Scene()
+    scene.box("cart", size=(1.0, 0.4, 0.1), mass=10.0, position=(0.0, 0.0, 0.3))
+    for k, (x, y) in enumerate(((-0.4, -0.3), (-0.4, 0.3), (0.4, -0.3), (0.4, 0.3))):
+        scene.cylinder(f"wheel_{k}", radius=0.1, height=0.04, axis="Y", mass=1.0, position=(x, y, 0.2))
+        scene.joint_revolute(f"axle_{k}", "cart", f"wheel_{k}", axis="Y", anchor=(x, y, 0.2))
+    for k, radius in enumerate((0.05, 0.08)):
+        scene.cylinder(f"crank_{k}", radius=radius, height=0.02, axis="Y", mass=1.0, position=(0.1 * k, 0.0, 0.5))
+        scene.joint_revolute(f"pin_{k}", "cart", f"crank_{k}", axis="Y", anchor=(0.1 * k, 0.0, 0.5))
+    found = strands(describe(scene.save(tmp_path / "stage.usda")))
+    assert sorted(len(thing) for thing in found) == [1, 1, 5]

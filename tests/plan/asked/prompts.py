@@ -218,6 +218,96 @@ SOUND = [
           "a ball hits the crate": [2]}),
 ]  # fmt: skip
 
+# Thought of once all above was told apart: ordinals, relative clauses, pronouns, two of a name.
+HARDER = [
+    Case(
+        "A box that is pushed by the cart hits the wall.",
+        ("collides_with box wall", "pushes(cart, box)"),
+        {"A box that is pushed by the cart": [1], "hits the wall": [0]},
+    ),
+    Case(
+        "The first ball hits the second ball.",
+        ("collides_with ball_one ball_two",),
+        {"The first ball hits the second ball": [0, "ball"]},
+    ),
+    Case(
+        "A ball rolls and hits another ball.",
+        ("collides_with ball_one ball",),
+        {"A ball rolls and hits another ball": [0]},
+    ),
+    Case("A ball hits a ball.", ("collides_with ball_one ball",), {"A ball hits a ball": [0]}),
+    Case(
+        "When the ball hits it, the box falls onto the cart.",
+        ("collides_with ball box", "touches(box, cart)"),
+        {"the ball hits it": [0], "the box falls onto the cart": [1]},
+    ),
+    Case(
+        "The falling box is struck by the ball and hits the ground.",
+        ("collides_with ball box", "collides_with box ground"),
+        {"The falling box is struck by the ball": [0], "hits the ground": [1]},
+    ),
+    Case("The ball never stops.", ("moves ball",), {"The ball never stops": [0]}),
+    Case(
+        "The ball does not reach the wall.",
+        ("always (gone_between(ball, x, 0 m, 3.5 m))",),
+        {"The ball does not reach the wall": [0]},
+    ),
+    Case(
+        "The ball does not drop below 1 m.", ("not (crosses(ball, z, 1 m))",), {"The ball does not drop below 1 m": [0]}
+    ),
+    Case("The tower is not hit.", ("always (never_touches(ball, tower))",), {"The tower is not hit": [0]}),
+    Case(
+        "Without hitting the crate the ball flies on to the wall.",
+        ("always (never_touches(ball, crate))", "collides_with ball wall"),
+        {"Without hitting the crate": [0], "the ball flies on to the wall": [1]},
+    ),
+    Case(
+        "The cart comes to rest within 2 m.",
+        ("always (gone_between(cart, x, 0 m, 2 m))", "settles cart"),
+        {"The cart comes to rest within 2 m": [0, 1]},
+    ),
+    Case(
+        "The ball hits the box and then lands on the ground.",
+        ("collides_with ball box", "rests_on ball ground"),
+        {"The ball hits the box": [0], "lands on the ground": [1]},
+    ),
+    Case(
+        "The ball is thrown against the box, hits it and rolls into the wall.",
+        ("collides_with ball box", "touches(ball, wall)"),
+        {"thrown against the box": ["ball.velocity"], "hits it": [0], "rolls into the wall": [1]},
+    ),
+    Case("The ball hits the top of the box.", HITS, {"The ball hits the top of the box": [0]}),
+    Case(
+        "The box stands beside the crate, and the ball strikes it.",
+        ("collides_with ball box", "rests_on crate ground"),
+        {"The box stands beside the crate": [1], "the ball strikes it": [0]},
+    ),
+    Case(
+        "A skittle is knocked over by the ball.", ("topples skittle",), {"A skittle is knocked over by the ball": [0]}
+    ),
+    Case(
+        "The box slides down the ramp and bumps into the wall.",
+        ("goes_down(box, ramp)", "collides_with box wall"),
+        {"The box slides down the ramp": [0], "bumps into the wall": [1]},
+    ),
+    Case(
+        "The ball touches neither the box nor the crate.",
+        ("always (never_touches(ball, box))", "always (never_touches(ball, crate))"),
+        {"The ball touches neither the box nor the crate": [0, 1]},
+    ),
+    Case("The ball and the box touch.", ("touches(ball, box)",), {"The ball and the box touch": [0]}),
+    Case(
+        "Both balls hit the wall.",
+        ("collides_with ball_one wall", "collides_with ball_two wall"),
+        {"Both balls hit the wall": [0, 1]},
+    ),
+    Case(
+        "The ball passes over the box without touching it.",
+        ("crosses(ball, x, 2 m)", "always (never_touches(ball, box))"),
+        {"The ball passes over the box": [0], "without touching it": [1]},
+    ),
+]
+
 
 def _hits(prompt: str, *objectives: str) -> Case:
     """A plan whose every objective answers for all words."""

@@ -197,3 +197,15 @@ def test_what_lands_on_a_scale_lands_on_its_pan(pan: bool, silent: list[str]) ->
         joints=[guide] if pan else None,
     )  # fmt: skip
     assert [gap.demand.text for gap in missing(made)] == silent
+
+
+@pytest.mark.parametrize(("until", "silent"), [(2.5, []), (2.35, []), (1.5, ["two seconds"])])
+def test_a_window_answers_for_how_long_it_is(until: float, silent: list[str]) -> None:
+    waits = {
+        "kind": "formula",
+        "object": "ball",
+        "sentence": f"always[0.5, {until}](speed_between(ball, 0 m/s, 1 mm/s))",
+    }
+    clauses = [{"words": "A ball waits two seconds", "by": [0]}]
+    made = plan(clauses, "A ball waits two seconds.", objectives=[waits], simulation={"duration": 3})
+    assert [gap.demand.text for gap in missing(made)] == silent

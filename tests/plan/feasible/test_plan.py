@@ -73,6 +73,11 @@ WRONG: dict[str, tuple[dict[str, Any], str]] = {
         {"objects": [POST, DOOR], "objectives": [formula("upright(door, 10 deg)", "door")], "joints": [HINGE]},
         r"upright of door, which hinge lets turn about the vertical alone: .* ask turned_between\(door, z",
     ),
+    "a weight that a hinge bears": (
+        {"objects": [POST, DOOR], "objectives": [formula("finally (weighs_on(door, ground))", "door")],
+         "joints": [HINGE]},
+        r"weighs_on\(door, ground\), and hinge bears a part of its weight; ask lies_on\(door, ground\)",
+    ),
     "an anchor in the air": (
         {"objects": [POST, DOOR], "objectives": [OPENS],
          "joints": [{**HINGE, "anchor": [-0.45, 0.7, 0]}]},

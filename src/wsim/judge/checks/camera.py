@@ -137,7 +137,7 @@ class CheckSeen(Check):
     """Everything that moves is to be seen in some picture: not hidden behind something in all, and not too small.
 
     A cable is one thing, part of which may run behind a post; so is what inner parts that meet nothing hold together,
-    and what is fixed to each other for good.
+    what is fixed to each other for good, and a cart with its wheels.
     """
 
     pixels: float = 16.0  # of a picture, below which it is a speck

@@ -73,7 +73,9 @@ class CheckRecordedForces(Check):
             prim, start, end = evidence.world.bodies[i].prim, float(evidence.time[k]), float(evidence.time[k + 1])
             way = listed(tuple((left[k, i] / max(float(size[k, i]), 1e-300)).round(2)))
             value, limit = float(size[k, i] * weight[i]), float(limits[k, i] * weight[i])
-            verb, kind = ("pushed", "momentum") if unit == "N" else ("turned", "angular momentum")
+            verb, kind, cause = (
+                ("pushed", "momentum", "force") if unit == "N" else ("turned", "angular momentum", "torque")
+            )
             found.append(
                 self.measured(
                     f"{prim} is {verb} by {value:.3g} {unit} towards {way} that nothing recorded gives, from "
@@ -82,7 +84,7 @@ class CheckRecordedForces(Check):
                     fine=f"What is recorded gives each body the {kind} that it gained",
                     limit_from=f"{part:g} of gravity and of what contacts, ties and fluid gave, and what steps of the "
                     "first order leave where bodies turn",
-                    target=RepairTarget(kind="program", prim=prim, why=f"a {unit} that is not recorded acts on it"),
+                    target=RepairTarget(kind="program", prim=prim, why=f"a {cause} that is not recorded acts on it"),
                 )
             )  # fmt: skip
         return found

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from wsim.scene.labels import wheels
+
 if TYPE_CHECKING:
     from wsim.scene.world import Body, Joint, World
 
@@ -16,15 +18,16 @@ def strands(world: World) -> list[list[Body]]:
 
     Of a cable with its other links, capsules of one radius on ball joints. A body of which nothing collides is an inner
     part, as what is between a wheel and its spring: with all that joints tie to it, it is one thing, a vehicle. So is
-    what is fixed to another for good: a door with its handle.
+    what is fixed to another for good, a door with its handle, and a cart with its wheels.
     """
     of = {body.prim: [body] for body in world.bodies}
-    bodies = {body.prim: body for body in world.bodies}
+    bodies, turns = {body.prim: body for body in world.bodies}, wheels(world)
     for joint in world.joints:
         if joint.parent is None:
             continue
         one, other = of[joint.parent], of[joint.child]
-        if one is not other and _together(bodies[joint.parent], bodies[joint.child], joint):
+        is_wheel = turns.get(joint.child) == joint.parent or turns.get(joint.parent) == joint.child
+        if one is not other and (is_wheel or _together(bodies[joint.parent], bodies[joint.child], joint)):
             one += other
             of |= {body.prim: one for body in other}
     return list({id(thing): thing for thing in of.values()}.values())

@@ -20,6 +20,9 @@ _EACH_OTHER = frozenset(("collide", "meet", "touch", "crash"))  # what two do to
 _TO = frozenset(("into", "against", "with", "on", "onto", "upon", "over", "down"))  # between a verb and whom it is of
 _INTO = frozenset(("roll", "slide", "fly", "swing", "drive", "run", "move", "go", "glide", "fall", "drop", "plunge"))
 _CONTACT = frozenset(("collides_with", "touches"))
+_MEETINGS = frozenset(("collides_with", "touches", "pushes", "never_touches", "not_touches", "not_collides_with"))
+_ORDINALS = "first second third fourth fifth last next other another same"
+_ONE_OF = frozenset(_ORDINALS.split())  # of some of one name
 _FLOOR = frozenset(("ground", "floor"))
 _ELSE = ("touches_only", "stays_within", "follows_path", "conserves", "ordered")  # says something of other kinds
 Names = frozenset[str]
@@ -56,12 +59,14 @@ def strangers(plan: Plan, demand: Demand, objectives: Sequence[Objective]) -> st
     if found.bears is None:
         return ""
     bears = _whole(plan, found.bears)
-    asked = [(_involved(each, plan), each) for each in objectives]
-    if any(names is None for names, _ in asked):
+    asked = [(_involved(each, plan), shows(each, _MEETINGS)) for each in objectives]
+    known = [(names, meets) for names, meets in asked if names is not None]
+    if len(known) < len(asked):
         return ""
-    known = [(names, each) for names, each in asked if names is not None]
     for doer in found.does or (None,):
-        if not any(_is_about(names, doer and _whole(plan, doer), bears) for names, _ in known):
+        alike = doer == found.bears and len(found.bears) == 1  # "a ball hits a ball": which is which is not told
+        whole = doer and _whole(plan, doer)
+        if not alike and not any(_is_about(names, meets, whole, bears) for names, meets in known):
             who = f"{_said(doer)} and {_said(found.bears)}" if doer else _said(found.bears)
             about = "; ".join(" and ".join(sorted(names)) for names, _ in known)
             return f"it is said of {who}, and the objectives that are named for it are about {about}"
@@ -80,10 +85,12 @@ def _said(names: Names) -> str:
     return " or ".join(sorted(names))
 
 
-def _is_about(names: Names, doer: Names | None, bears: Names) -> bool:
-    """Whether an objective about some things is about those: both, or what the blow does to one of them."""
+def _is_about(names: Names, meets: bool, doer: Names | None, bears: Names) -> bool:
+    """Whether an objective about some things is about those: of a meeting both, else what it does to one of them."""
     if len(names) == 1:
         return bool(names & (bears | (doer or frozenset())))
+    if not meets:
+        return bool(names & bears)
     return any(one in bears and (doer is None or other in doer) for one in names for other in names - {one})
 
 
@@ -144,7 +151,9 @@ def _named_by(read: Words, k: int, own: dict[str, set[str]]) -> Names:
 
 
 def _narrowed(read: Words, begin: int, end: int, names: Names, own: dict[str, set[str]]) -> Names:
-    """Those whose whole name is said, where some are: "the red ball" is not the ball."""
+    """Those whose whole name is said, where some are: "the red ball" is not the ball, "the second ball" may be any."""
+    if _ONE_OF & {read.said[k].text for k in range(max(0, begin - 3), begin)}:
+        return names
     said = {read.said[k].text for k in range(max(0, begin - 3), end + 1)}
     said |= {text.removesuffix("s") for text in said}
     whole = [name for name in names if own[name] - _FLOOR <= said]

@@ -49,7 +49,16 @@ def asks(objective: Objective, demand: Demand) -> bool:
             return True
         if any(close(value, demand) for value in _numbers(fields.values())):
             return True
+        window = fields.get("window")
+        if demand.unit == "s" and isinstance(window, tuple) and _lasts(window[1] - window[0], demand):
+            return True
     return False
+
+
+def _lasts(seconds: float, demand: Demand) -> bool:
+    """Whether a window is as long as a stated time, less what starting and stopping take of it."""
+    assert demand.value is not None
+    return math.isclose(seconds, demand.value, rel_tol=2.0 * ROUNDING)
 
 
 def asks_by_then(objective: Objective, demand: Demand) -> bool:

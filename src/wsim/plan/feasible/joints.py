@@ -1,4 +1,4 @@
-"""Joints: an anchor that holds neither body, and a tilt that a hinge does not allow."""
+"""Joints: an anchor that holds neither body, a tilt that a hinge does not allow, and a weight that it bears."""
 
 from __future__ import annotations
 
@@ -27,13 +27,26 @@ def joint_faults(plan: Plan) -> Iterator[str]:
         if child is not None and parent is not None:
             yield from _off(number, joint, child, parent)
     upright = {joint.child: joint for joint in plan.joints if _turns_upright(joint, items)}
+    held = {joint.child: joint for joint in plan.joints if _bears(joint, items)}
     for each in said(plan):
+        if each.name == "weighs_on" and not each.denied and each.object in held:
+            yield (
+                f"{each.where}: weighs_on({each.object}, {each.ref}), and {held[each.object].name} bears a part of its "
+                f"weight; ask lies_on({each.object}, {each.ref})"
+            )
         if each.name in _TILTS and each.object in upright:
             joint = upright[each.object]
             yield (
                 f"{each.where}: {each.name} of {each.object}, which {joint.name} lets turn about the vertical alone: "
                 f"it never tilts; ask turned_between({each.object}, z, low, high) of it"
             )
+
+
+def _bears(joint: Joint, items: dict[str, PlanObject]) -> bool:
+    """Whether what stands still holds a body by its joint, in the way of its weight, for good."""
+    holder = items.get(joint.parent or "")
+    stands = holder is None or holder.state == "static"
+    return stands and joint.kind in ("hinge", "ball")
 
 
 def _turns_upright(joint: Joint, items: dict[str, PlanObject]) -> bool:

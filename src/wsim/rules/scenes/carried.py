@@ -7,11 +7,12 @@ import math
 from wsim.defaults import GRAVITY
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Pose, Vec3
+from wsim.plan.schema.formula_motion import Drops
 from wsim.plan.schema.formula_place import Reaches
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.materials import material_named
 from wsim.rules.scenes.catch import catcher, lands
-from wsim.rules.scenes.lasting import turns
+from wsim.rules.scenes.lasting import asked, turns
 from wsim.rules.scenes.part import Part, fall_time, pair_friction, tall, tidy
 from wsim.rules.sizes import bodies
 
@@ -110,6 +111,7 @@ def _catch(thing: Thing, item: PlanObject, end: float, speed: float, part: Part,
     [made] = bodies(vessel, cast, taken)
     caught = catcher(thing, made, item, speed, HEIGHT, cast)
     at = Pose(position=(tidy(end + caught.way), 0.0, 0.0))
+    part.objectives.append(asked(item.name, f"{item.name} leaves the belt and falls.", Drops(object=item.name)))
     part.objectives.append(lands(item.name, made.name))
     part.objects.append(caught.vessel.model_copy(update={"pose": at}))
     part.names[id(vessel)] = [caught.vessel.name]
@@ -254,8 +256,15 @@ def _turntable(table: Thing, riders: list[Thing], part: Part, cast: Cast, taken:
     turned = math.radians(spin) * (cast.duration or part.duration)
     if table.spin is not None:
         part.objectives.append(turns(disc.name, spin))
+    if len([item for thing, item in loads if thing.side == "middle"]) > 1:
+        raise UserError(f"{table.words!r}: one thing can stand in its middle, not more")
     for number, (thing, item) in enumerate(loads):
         angle = 2 * math.pi * number / len(loads)
+        if thing.side == "middle":
+            _spun(thing, item, disc, 0.0, 0.0, spin, part)
+            sentence = f"{item.name} stays on {disc.name}."
+            part.objectives.append(Objective(kind="stays_on", object=item.name, ref=disc.name, sentence=sentence))
+            continue
         _spun(thing, item, disc, ring, angle, spin, part)
         part.objectives += _round(item, part.posed[-1].pose, disc, ring, turned)
 

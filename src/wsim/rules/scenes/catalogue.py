@@ -52,7 +52,7 @@ def itself(item: PlanObject, thing: Thing, cast: Cast) -> PlanObject | None:
         or phrase.shape
         or thing.surface
     )
-    moves = any(item.velocity) or item.angular_velocity_deg or item.rolling
+    moves = any(item.velocity) or item.angular_velocity_deg or item.rolling or thing.force is not None
     rubs = any(name != "friction" for _, name, _ in thing.pairs)
     if "topple" in thing.does:
         return None  # a box of its size falls over as surely as it is pushed to, whatever is under its feet

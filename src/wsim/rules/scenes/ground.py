@@ -6,19 +6,21 @@ from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.layout.bodies import around
 from wsim.plan.schema import Objective, PlanObject, Registration, Relation
-from wsim.plan.schema.formula_contact import CollidesWith
+from wsim.plan.schema.formula_contact import CollidesWith, SupportedBy
 from wsim.plan.schema.predicates import OVERLAP
 from wsim.rules.cast import Beside, Cast, Thing
 from wsim.rules.places import SIDES
 from wsim.rules.scenes.bounce import bounce, bounces
 from wsim.rules.scenes.hit import hit, meet, struck
+from wsim.rules.scenes.lasting import asked
 from wsim.rules.scenes.legs import on_legs
 from wsim.rules.scenes.motion import ground_object, move, throw_height, top
 from wsim.rules.scenes.part import Part, fall_time, tall, tidy
 from wsim.rules.scenes.tip import on_side, slender, tipped, upended
-from wsim.rules.sizes import bodies
+from wsim.rules.sizes import bodies, mouth
 
 GAP = 0.15  # between neighbours on the ground [m]
+APART = 0.004  # between things in a vessel [m]
 GAP_ABOVE = 0.08  # between neighbours on a table [m]
 ROW_SHARE = 0.5  # of their height, between things in a row: each then reaches the next as it falls
 _UNDER = ("ALIGN-CENTER-LR", "ALIGN-CENTER-FB")  # with what it is under
@@ -47,7 +49,7 @@ def build_ground(cast: Cast, taken: set[str], scene: Part) -> Part:
                     f"{thing.words!r} beside {beside.ref.words!r}: the builtin planner builds nothing there"
                 )
     ends = _Ends(scene, still=not any(_goes(thing) for thing in things))
-    catches = [thing.into for thing in things if thing.into is not None]
+    catches = [one for thing in things for one in (thing.into, thing.over) if one is not None]
     for thing in catches:
         [part.vessels[id(thing)]] = bodies(thing, cast, taken)
         part.names[id(thing)] = [part.vessels[id(thing)].name]
@@ -87,7 +89,14 @@ class _Ends:
         first = max(fixed, key=lambda item: around(item).high[1]).name if fixed else "tank" if tank else None
         self.last: dict[int | None, str] = {} if first is None else {None: first}
         edge = max((around(item).high[1] for item in fixed), default=0.0)
+        self.inside: dict[int, list[str]] = {}  # what is in a vessel
         self.clear = tidy(scene.span[1] - edge) if fixed else 0.0  # by which what it carries juts out [m]
+
+    def among(self, thing: Thing, name: str) -> list[str]:
+        """What is in the same vessel before an object."""
+        found = self.inside.setdefault(id(thing.inside), [])
+        found.append(name)
+        return found[:-1]
 
     def row(self, thing: Thing) -> Relation | None:
         """The row that puts a thing beside the last one on the same support."""
@@ -173,7 +182,7 @@ def _place(thing: Thing, cast: Cast, taken: set[str], part: Part, ends: _Ends) -
         stacked = thing.arrangement == "stack" and index > 0
         lower = made[index - 1].name if stacked else below
         start = _start(thing, lower, height, part, stacked)
-        rows = [start, *(_in_plane(thing, made, index, part, ends) if not stacked else [])]
+        rows = [start, *(_in_plane(thing, made, index, part, ends, cast) if not stacked else [])]
         rows += [] if stacked else _facing(thing, part)
         item = move(thing, item, cast, part, below)
         if height is not None and "drop" in thing.does:
@@ -213,13 +222,13 @@ def _start(thing: Thing, lower: str | None, height: float | None, part: Part, st
     return Relation(predicate="PLACE-ON-BASE")
 
 
-def _in_plane(thing: Thing, made: list[PlanObject], index: int, part: Part, ends: _Ends) -> list[Relation]:
+def _in_plane(thing: Thing, made: list[PlanObject], index: int, part: Part, ends: _Ends, cast: Cast) -> list[Relation]:
     """The rows that say where in the plane an object is."""
     item = made[index]
     if thing.inside is not None:
         vessel = part.names[id(thing.inside)][0]
-        centred = ("ALIGN-CENTER-LR", "ALIGN-CENTER-FB") if "drop" in thing.does else ()
-        return [Relation(predicate=predicate, ref=vessel) for predicate in centred]
+        held = sum(one.count for one in cast.things if one.inside is thing.inside)
+        return _in_vessel(thing, item, vessel, held, ends.among(thing, item.name))
     if thing.arrangement == "row" and index > 0:
         gap = round(ROW_SHARE * tall(item), 3)
         return [Relation(predicate="FRONT-OF", ref=made[index - 1].name, gap=gap)]
@@ -242,6 +251,24 @@ def _in_plane(thing: Thing, made: list[PlanObject], index: int, part: Part, ends
         if beside.predicate == "LEFT-OF" and ends.last.get(on) == ref:
             ends.grow(thing, item.name)
     return rows
+
+
+def _in_vessel(thing: Thing, item: PlanObject, vessel: str, held: int, before: list[str]) -> list[Relation]:
+    """One in the middle, and the others around it; alone, only what drops comes down in the middle."""
+    if held == 1 and "drop" not in thing.does:
+        return []
+    if not before:
+        return [Relation(predicate=predicate, ref=vessel) for predicate in ("ALIGN-CENTER-LR", "ALIGN-CENTER-FB")]
+    assert thing.inside is not None
+    wide = 2 * item.size[0] if len(item.size) < len("xyz") else max(item.size[:2])
+    if wide > min(mouth(thing.inside.noun)[:2]) / 3:
+        raise UserError(f"{thing.words!r}: {held} of them do not fit side by side into {thing.inside.words!r}")
+    side, of = _AROUND[len(before) - 1]
+    return [Relation(predicate=side, ref=before[of], gap=APART)]
+
+
+_AROUND = (("FRONT-OF", 0), ("BACK-OF", 0), ("LEFT-OF", 0), ("RIGHT-OF", 0), ("LEFT-OF", 1), ("RIGHT-OF", 1),
+           ("LEFT-OF", 2), ("RIGHT-OF", 2))  # fmt: skip  # in a vessel: of which of those before
 
 
 def _facing(thing: Thing, part: Part) -> list[Relation]:
@@ -297,15 +324,17 @@ def _objectives(thing: Thing, item: PlanObject, lower: str | None, last: bool, c
             return [Objective(kind="collides_with", object=name, ref=lower, sentence=f"{name} falls on {lower}.")]
         cast.assume(thing.words, "nothing is asked of it", f"what is round may stay on {lower} or roll off")
         return []
+    if thing.bridges is not None:
+        return []
     return [Objective(kind="stays_on", object=name, ref=lower, sentence=f"{name} stays on {lower}.")]
 
 
 def _on_both(thing: Thing, name: str, part: Part) -> list[Objective]:
-    """Of a bridge: that it stays on what carries its other end, too."""
-    if thing.bridges is None:
+    """Of a bridge, whose middle is over neither of what carries its ends: that both bear it."""
+    if thing.bridges is None or thing.support is None:
         return []
-    other = part.names[id(thing.bridges)][-1]
-    return [Objective(kind="stays_on", object=name, ref=other, sentence=f"{name} stays on {other}.")]
+    ends = [part.names[id(end)][-1] for end in (thing.support, thing.bridges)]
+    return [asked(name, f"{name} is borne by {end}.", SupportedBy(object=name, ref=end)) for end in ends]
 
 
 def _hit(thing: Thing, cast: Cast) -> bool:

@@ -12,6 +12,7 @@ from wsim.rules.cast import ROUND, Cast, Thing
 from wsim.rules.materials import GROUND_LOOK, material_named
 from wsim.rules.scenes.catch import catcher, deaden, lands, reach
 from wsim.rules.scenes.lasting import asked
+from wsim.rules.scenes.over import clearing, stand_below
 from wsim.rules.scenes.part import (
     DIRECTIONS,
     MOST_SPEED,
@@ -23,6 +24,7 @@ from wsim.rules.scenes.part import (
     tidy,
     times,
 )
+from wsim.rules.scenes.timed import push
 
 ROLL_SPEED, SLIDE_SPEED, PUSH_SPEED = 1.0, 2.0, 1.5  # [m/s]
 STOP_WAY = 1.5  # after which a ball that is to stop has stopped [m]
@@ -52,6 +54,9 @@ def move(thing: Thing, item: PlanObject, cast: Cast, part: Part, below: str | No
     carrier = next((o for o in part.objects if o.name == below), ground_object(cast.ground))
     friction = pair_friction(item, carrier, thing.said("friction", thing.support))
     direction = thing.direction or "front"
+    if thing.force is not None:
+        push(thing, item, friction, DIRECTIONS[direction], cast, part)
+        return item
     if thing.into is not None:
         return _into(thing, item, carrier, how, friction, direction, cast, part)
     speed = _speed(thing, item, carrier, how, friction, cast)
@@ -162,6 +167,7 @@ def _speed(thing: Thing, item: PlanObject, carrier: PlanObject, how: str, fricti
     if how in ("slide", "push") and thing.off and carrier.size:
         way = carrier.size[0] / 2 + item.size[0]  # so that its middle is over the edge with speed to spare
         speed = math.ceil(10 * 1.3 * math.sqrt(2 * friction * GRAVITY * way)) / 10
+    speed *= {"slowly": 0.5, "quickly": 2.0}.get(next(iter({"slowly", "quickly"} & thing.manners), ""), 1.0)
     cast.assume(thing.words, f"starts at {speed:g} m/s", "the prompt gives no speed")
     return speed
 
@@ -188,6 +194,11 @@ def _thrown(thing: Thing, item: PlanObject, cast: Cast, part: Part) -> PlanObjec
     if not -45.0 <= angle <= 85.0:
         raise UserError(f"{thing.words!r}: {angle:g} degrees is outside -45 to 85, the planner's range of throws")
     speed = THROW_SPEED if thing.speed is None else thing.speed
+    height = thing.drop_height or 0.0
+    if thing.support is not None:
+        height += top(part.names[id(thing.support)][-1], part)
+    if thing.over is not None:
+        speed, angle = clearing(thing, part.vessels[id(thing.over)], height, speed, angle)
     for given, text, what in (
         (thing.speed, f"thrown at {speed:g} m/s", "speed"),
         (thing.angle, f"thrown at {angle:g} degrees above the level", "angle"),
@@ -196,9 +207,6 @@ def _thrown(thing: Thing, item: PlanObject, cast: Cast, part: Part) -> PlanObjec
         if given is None:
             cast.assume(thing.words, text, f"the prompt gives no {what}")
     along, up = speed * math.cos(math.radians(angle)), speed * math.sin(math.radians(angle))
-    height = thing.drop_height or 0.0
-    if thing.support is not None:
-        height += top(part.names[id(thing.support)][-1], part)
     time = (up + math.sqrt(up**2 + 2 * GRAVITY * height)) / GRAVITY
     way = round(0.9 * along * time, 3)
     direction = thing.direction or "front"
@@ -219,6 +227,8 @@ def _thrown(thing: Thing, item: PlanObject, cast: Cast, part: Part) -> PlanObjec
         if thing.round
         else stopping_distance(along, pair_friction(item, ground_object(cast.ground), thing.said("friction", None)))
     )
+    if thing.over is not None:
+        stand_below(thing, item, part.vessels[id(thing.over)], along * up / GRAVITY, direction, cast, part)
     if thing.into is not None:
         _thrown_into(thing, item, along, up, height, direction, cast, part)
     level = times(DIRECTIONS[direction], 1.0)

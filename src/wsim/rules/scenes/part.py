@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from wsim.defaults import GRAVITY
 from wsim.plan.layout.bodies import around
 from wsim.plan.layout.boxes import Box
-from wsim.plan.schema import CameraPlan, Contact, Joint, Objective, PlanObject, Vec3
+from wsim.plan.schema import CameraPlan, Contact, Cord, Joint, Objective, PlanObject, SchedulePlan, Vec3
 
 MOST_SPEED = 50.0  # that the prompt may give [m/s]
 DIRECTIONS: dict[str, Vec3] = {
@@ -27,6 +27,8 @@ class Part:
         objects: To be laid out by their rows, or kept where their pose says.
         posed: With poses that no row could give, such as on an incline: added once the rest is laid out.
         joints: Between any of them.
+        cords: What ties them.
+        schedules: What happens by time.
         contacts: Of pairs whose friction follows from none of their materials.
         objectives: What must happen to them.
         duration: That it takes [s].
@@ -44,6 +46,8 @@ class Part:
     objects: list[PlanObject] = field(default_factory=list)
     posed: list[PlanObject] = field(default_factory=list)
     joints: list[Joint] = field(default_factory=list)
+    cords: list[Cord] = field(default_factory=list)
+    schedules: list[SchedulePlan] = field(default_factory=list)
     contacts: list[Contact] = field(default_factory=list)
     objectives: list[Objective] = field(default_factory=list)
     duration: float = 0.0
@@ -62,6 +66,8 @@ class Part:
         self.objects += other.objects
         self.posed += other.posed
         self.joints += other.joints
+        self.cords += other.cords
+        self.schedules += other.schedules
         self.contacts += other.contacts
         self.objectives += other.objectives
         self.duration = max(self.duration, other.duration)
@@ -81,13 +87,24 @@ class Part:
         return self._by(((box.low[0] + box.high[0]) / 2, (box.low[1] + box.high[1]) / 2, box.high[2]))
 
     def _by(self, way: Vec3) -> Part:
-        return replace(self, objects=[_moved(o, way) for o in self.objects], posed=[_moved(o, way) for o in self.posed])
+        return replace(
+            self,
+            objects=[_moved(o, way) for o in self.objects],
+            posed=[_moved(o, way) for o in self.posed],
+            cords=[_tied(cord, way) for cord in self.cords],
+        )
 
     @property
     def span(self) -> tuple[float, float]:
         """From and to where along Y its objects with a pose reach [m]."""
         boxes = [around(item) for item in (*self.objects, *self.posed) if item.pose is not None]
         return min((box.low[1] for box in boxes), default=0.0), max((box.high[1] for box in boxes), default=0.0)
+
+
+def _tied(cord: Cord, way: Vec3) -> Cord:
+    ends = {name: getattr(cord, name) for name in ("anchor_a", "anchor_b")}
+    moved = {name: tuple(tidy(a + b) for a, b in zip(at, way, strict=True)) for name, at in ends.items() if at}
+    return cord.model_copy(update=moved)
 
 
 def _moved(item: PlanObject, way: Vec3) -> PlanObject:

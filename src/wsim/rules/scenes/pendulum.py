@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 from wsim.defaults import GRAVITY
 from wsim.errors import UserError
-from wsim.plan.schema import Joint, JointDrive, Objective, PlanObject, Pose
+from wsim.plan.schema import Cord, Joint, JointDrive, Objective, PlanObject, Pose, Vec3
+from wsim.plan.schema.formula_motion import Swings
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.materials import material_named
-from wsim.rules.scenes.lasting import swings_down, to_and_fro
+from wsim.rules.scenes.lasting import asked, swings_down, to_and_fro
 from wsim.rules.scenes.part import Part, tall, tidy
 from wsim.rules.scenes.struck import Struck, stand_before
 from wsim.rules.sizes import LARGEST, SMALLEST, bodies, material_of, names, size_of
@@ -20,6 +21,7 @@ ANGLE, HIT_ANGLE = 20.0, 60.0  # of a pendulum at the start, and of one that hit
 CLEARANCE = 0.3  # of a pendulum's lowest point above the ground [m]
 APART = 0.3  # between several side by side [m]
 LESS = 0.9  # that each half swing goes as far as the one before, of what dies down
+TWO_MODES = 0.06  # of the period on a rope: a body turns at the rope's end, too, with the faster mode
 PERIODS = 3.0  # that a pendulum is watched for
 AFTER = 2.0  # and what it has hit [s]
 QUICK = 60.0  # pictures a second of a blow: what rubs on the ground meanwhile is told from it [1/s]
@@ -67,8 +69,15 @@ def _hang(hanging: Hanging, cast: Cast, taken: set[str]) -> Part:
     clear = CLEARANCE if thing.drop_height is None else thing.drop_height
     height = round(length + hanging.half + clear, 3) if struck is None else tidy(struck.height + length)
     below = "the ground" if thing.support is None else thing.support.words
-    cast.assume(thing.words, f"hangs from a hinge {height:g} m above {below}", f"so that it clears {below}")
+    held = "point" if hanging.rope else "hinge"
+    cast.assume(thing.words, f"hangs from a {held} {height:g} m above {below}", f"so that it clears {below}")
     turn = math.radians(-angle if struck is not None else angle)
+    if hanging.rope and "die" not in thing.does:
+        body = _on_rope(hanging, turn, height, part, taken)
+        _ask(hanging, body, angle, struck, part, cast)
+        up = (tidy(-length * math.sin(turn)), 0.0, tidy(length * math.cos(turn)))
+        part.goes.setdefault(body.name, []).append(up)  # to where the rope ends, which is to be seen
+        return part
     rod, body = _pose(hanging, turn, height, cast, taken)
     part.posed += [rod, body]
     damped = _damped(rod, body, length, cast, thing) if "die" in thing.does else None
@@ -82,6 +91,27 @@ def _hang(hanging: Hanging, cast: Cast, taken: set[str]) -> Part:
     ]  # fmt: skip
     _ask(hanging, body, angle, struck, part, cast)
     return part
+
+
+def _on_rope(hanging: Hanging, turn: float, height: float, part: Part, taken: set[str]) -> PlanObject:
+    """The body at the end of a rope, which pulls where it is taut and weighs nothing; from the top of the body."""
+    length, half = hanging.length, hanging.half
+    name = next(one for one in ("rope", f"{hanging.item.name}_rope") if one not in taken)
+    taken.add(name)
+
+    def at(distance: float) -> Vec3:
+        return tidy(distance * math.sin(turn)), 0.0, tidy(height - distance * math.cos(turn))
+
+    pose = Pose(position=at(length), rotation_deg=(0.0, tidy(-math.degrees(turn)), 0.0))
+    body = hanging.item.related([]).model_copy(update={"pose": pose})
+    part.posed.append(body)
+    part.cords.append(
+        Cord(
+            name=name, kind="rope", b=body.name, anchor_a=(0.0, 0.0, tidy(height)), anchor_b=at(length - half),
+            length=tidy(length - half), radius=ROPE_RADIUS,
+        )
+    )  # fmt: skip
+    return body
 
 
 def _angle(thing: Thing, cast: Cast) -> float:
@@ -132,7 +162,13 @@ def _ask(hanging: Hanging, body: PlanObject, angle: float, struck: Struck | None
         x, drop = tidy(length * math.sin(math.radians(angle))), tidy(length * (1.0 - math.cos(math.radians(angle))))
         part.goes[name] = [(x, 0.0, -drop), (2 * x, 0.0, 0.0)]
         return
-    if angle:
+    if angle and hanging.rope and "die" not in thing.does:
+        wide = math.radians(angle)
+        period = round(_rope_period(hanging) * (1 + wide**2 / 16 + 11 * wide**4 / 3072), 3)
+        sentence = f"{name} swings with the period of what hangs on a rope, {period:g} s."
+        part.objectives.append(asked(name, sentence, Swings(object=name, period=period, share=TWO_MODES)))
+        part.objectives += to_and_fro(thing, name, "x", 1.0, cast)
+    elif angle:
         sentence = f"{name} swings as a pendulum of its length does."
         part.objectives.append(Objective(kind="swings", object=name, sentence=sentence))
         part.objectives += to_and_fro(thing, name, "x", LESS**2 if "die" in thing.does else 1.0, cast)
@@ -141,6 +177,26 @@ def _ask(hanging: Hanging, body: PlanObject, angle: float, struck: Struck | None
     part.duration = round(PERIODS * period, 1)
     x, drop = tidy(length * math.sin(math.radians(angle))), tidy(length * (1.0 - math.cos(math.radians(angle))))
     part.goes[name] = [(-x, 0.0, -drop), (-2 * x, 0.0, 0.0)]  # through its lowest point to the other side
+
+
+def _rope_period(hanging: Hanging) -> float:
+    """Of small swings of a body that turns freely at the end of a rope, the slower of its two modes [s].
+
+    With a rope of l, the centre of mass h below its end and a radius of gyration k, w^2 is the smaller root of
+    l^2 k^2 w^4 - g l (h^2 + k^2 + l h) w^2 + g^2 l h = 0 (the double pendulum of Goldstein, Classical Mechanics, ch. 6,
+    with a rope that weighs nothing).
+    """
+    item, h = hanging.item, hanging.half
+    rope = hanging.length - h
+    if item.primitive == "box":
+        gyration = (item.size[0] ** 2 + item.size[2] ** 2) / 12
+    elif item.primitive == "sphere":
+        gyration = 0.4 * item.size[0] ** 2
+    else:
+        lies = h == item.size[0]
+        gyration = item.size[0] ** 2 / 2 if lies else item.size[0] ** 2 / 4 + tall(item) ** 2 / 12
+    a, b, c = rope**2 * gyration, GRAVITY * rope * (h**2 + gyration + rope * h), GRAVITY**2 * rope * h
+    return 2 * math.pi / math.sqrt((b - math.sqrt(b**2 - 4 * a * c)) / (2 * a))
 
 
 def _damped(rod: PlanObject, bob: PlanObject, length: float, cast: Cast, thing: Thing) -> JointDrive:
@@ -165,8 +221,8 @@ def _hanging(thing: Thing, cast: Cast, taken: set[str]) -> list[Hanging]:
     usual = ROPE_LENGTH if rope else ROD_LENGTH
     if length is None:
         length = usual
-        end = "its lower end" if rope else "the bob's centre"
-        cast.assume(thing.words, f"{length:g} m from the hinge to {end}", "the prompt gives no length")
+        choice = f"on a rope of {length:g} m" if rope else f"{length:g} m from the hinge to the bob's centre"
+        cast.assume(thing.words, choice, "the prompt gives no length")
     if not 4 * SMALLEST <= length <= LARGEST:
         raise UserError(
             f"{thing.words!r}: {length:g} m is outside {4 * SMALLEST:g} to {LARGEST:g} m, a pendulum's range"

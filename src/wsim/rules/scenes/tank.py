@@ -84,8 +84,14 @@ def build_tank(cast: Cast, taken: set[str]) -> Part:
     )
     tallest = max((extents(s.item, _lying(s.item))[2] for s in swimmers), default=0.14)
     duration = math.ceil(2 * DURATION * max(1.0, math.sqrt(tallest / 0.14))) / 2
+    found = {id(one.thing): [other.item.name for other in swimmers if other.thing is one.thing] for one in swimmers}
     return Part(
-        objects=objects, objectives=objectives, duration=duration, spacing=spacing, surface=round(WALL + level, 6)
+        names=found,
+        objects=objects,
+        objectives=objectives,
+        duration=duration,
+        spacing=spacing,
+        surface=round(WALL + level, 6),
     )
 
 
