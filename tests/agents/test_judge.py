@@ -11,9 +11,10 @@ import pytest
 from tests.agents.scripted import Server, text
 from wsim.agents.ask import RETRIES, Desk
 from wsim.agents.failures import ModelError
-from wsim.agents.judge import Opinion, decide, opinion
+from wsim.agents.judge import PLAN_STAYS, Opinion, decide, opinion
 from wsim.judge.verdict import Finding, Verdict
 from wsim.plan.schema import Plan
+from wsim.plan.schema.cords import Cord
 
 PASSED = Verdict(status="accepted", summary="ok", findings=[Finding(check="CheckEnergy", passed=True, message="ok")])
 FAILED = Verdict(
@@ -53,6 +54,20 @@ def test_an_objection_rejects_what_passed(server: Server, desk: Desk, slide: Pla
     (request,) = server.asked("judge")
     for part in (slide.prompt, "ramp", "accepted: 0 of 1", "The crate stands on its lid."):
         assert part in request
+
+
+def test_a_judge_is_told_when_the_plan_stays(server: Server, desk: Desk, slide: Plan) -> None:
+    server.script["judge"] = [text(said(False, repair=REPAIR))] * 2
+    for stays in (False, True):
+        opinion(desk, slide, ["ramp"], ["rejected: 1 of 1 findings fail"], "", passed=False, plan_stays=stays)
+    assert [PLAN_STAYS in request for request in server.asked("judge")] == [False, True]
+
+
+def test_cords_are_named_as_objects_are(server: Server, desk: Desk, slide: Plan) -> None:
+    rope = Cord(name="rope", kind="rope", b="crate", anchor_a=(0.0, 0.0, 3.0))
+    server.script["judge"] = [text(said(False, [{**OBJECTION, "object": "rope"}]))]
+    held = ask(desk, slide.model_copy(update={"cords": [rope]}))
+    assert held.objections[0].object == "rope" and len(server.asked("judge")) == 1
 
 
 def test_an_objection_beside_a_failed_check_says_nothing_that_counts(server: Server, desk: Desk, slide: Plan) -> None:

@@ -5,7 +5,7 @@ must lead to the same patches and programs, byte for byte, and each program must
 fail on the way is the judge's affair, which learns.
 
 A first draft without the `control` that its plan asks for now ends before it is simulated, and no judge is asked of it:
-what was recorded of that judge is left out of `crank_slider` and `model_errors`.
+what was recorded of that judge is left out of `model_errors`. All others are as they were.
 """
 
 import json

@@ -202,7 +202,7 @@ def test_what_joints_give_under_an_effort_that_grows_is_summed_by_both_ends_of_a
         )
         scene.joint_revolute("shoulder", None, upper, anchor=(0.0, 0.0, 2.0), axis="Y")
         scene.joint_revolute("elbow", upper, lower, anchor=(0.4, 0.0, 2.0), axis="Y")
-        scene.schedule("twist", "elbow", "effort", times=(0.0, 0.4), values=(0.0, 6.0), linear=True)
+        scene.schedule("twist", "elbow", "effort", times=(0.0, 0.3), values=(0.0, 4.5), linear=True)
 
     evidence = Evidence(run(tmp_path, build))
     contacts = RecordedContacts(evidence, evidence.recording.contacts)

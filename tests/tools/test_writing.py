@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -10,7 +11,10 @@ from tests.tools.conftest import RIGID, call_tool, done, refused
 from wsim.plan.store import load
 from wsim.rules.planner import plan as make_plan
 from wsim.tools import TOOLS, Workspace
+from wsim.tools.plan import plan_lines
 from wsim.tools.text import LIMIT
+
+PLANS = Path(__file__).parents[2] / "examples" / "plans"
 
 BLOCKS = "Three wooden blocks float on the water in a glass tank."
 
@@ -213,3 +217,11 @@ def test_side_folders_of_an_interrupted_write_are_no_iterations(empty: Workspace
     assert "write_program" in refused(empty, "read_program")
     done(empty, "write_program", text=RIGID)
     assert not left.exists()
+
+
+def test_what_moves_an_arm_and_how_a_belt_runs_stand_in_the_plans_lines() -> None:
+    arm = plan_lines(load(PLANS / "pick_and_place.json"))
+    moved = 'arm is moved by schedule: joint "left_finger", target [0.03, 0.0, 0.0, 0.03], times [2.05, 2.45, 5.4, 5.8]'
+    assert moved in arm
+    belt = plan_lines(make_plan("A crate rides on a conveyor belt at 0.5 m/s."))
+    assert any("surface m/s" in line for line in belt) and any("0.5, 0, 0" in line for line in belt)

@@ -80,7 +80,7 @@ class Crew:
         tried.review = tried.review or "\n".join(nobody)
         reviewer.keep(tried.folder, seen, self.desk.models["reviewer"] if seen else BUILTIN)
 
-    def judge(self, tried: Attempt, plan: Plan, undone: Sequence[Attempt] = ()) -> None:
+    def judge(self, tried: Attempt, plan: Plan, undone: Sequence[Attempt] = (), plan_stays: bool = False) -> None:
         """Let the judge's model name what to mend, or object. Checks that failed stay failed.
 
         It is asked of a world without a fault, too: no check knows whether that is what the prompt asks for. Where no
@@ -90,6 +90,7 @@ class Crew:
             tried: What is judged.
             plan: What it must be.
             undone: Patches of it that made it no better: what was asked for before them did not help.
+            plan_stays: The planner was asked once already, and is not asked again.
         """
         if not self.has("judge") or tried.reached < Reached.PHYSICS or tried.verdict.status == "blocked":
             return
@@ -99,7 +100,7 @@ class Crew:
         passed = tried.verdict.status == "accepted"
         found, history = verdict_lines(tried.folder / "verdict.json"), self._history(undone)
         try:
-            held = judge.opinion(self.desk, plan, plan_lines(plan), found, tried.review, passed, history)
+            held = judge.opinion(self.desk, plan, plan_lines(plan), found, tried.review, passed, history, plan_stays)
         except ModelError as error:
             self.notes.append(f"iteration {tried.number} was judged by the checks alone: {error}")
             return

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 ROOT = "/World/"
 MINOR = 0.25  # of a major objection's weight
+PLAN_STAYS = 'The planner has been asked once, and is not again: leave "plan" null, and name a repair.'
 Short = Annotated[str, AfterValidator(lambda text: text[:800])]  # who says more is heard that far
 
 
@@ -70,6 +71,7 @@ def opinion(
     seen: str,
     passed: bool,
     undone: Sequence[str] = (),
+    plan_stays: bool = False,
 ) -> Opinion:
     """Ask the judge's model.
 
@@ -81,18 +83,20 @@ def opinion(
         seen: The review; empty if nobody looked.
         passed: Every check passed, so that only an objection can keep the world back.
         undone: Patches of this very world that made it no better.
+        plan_stays: The planner was asked once already, and is not asked again.
 
     Raises:
         ModelError: If no answer is an opinion.
         BudgetError: If tokens or time ran out.
     """
-    names = {item.name for item in plan.objects}
+    names = {each.name for things in (plan.objects, plan.cords) for each in things}
     review = seen or "nobody has looked at pictures yet"
     parts = [
         f"Prompt: {plan.prompt}", "# Plan", "\n".join(plan_lines), "# Checks", "\n".join(verdict_lines),
         "# Review", review,
     ]  # fmt: skip
     parts += ["# Tried from here, and undone", *undone] if undone else []
+    parts += [PLAN_STAYS] if plan_stays and not passed else []
     request = "\n\n".join(parts)
     return desk.ask("judge", request, lambda text: _read(text, names, passed))
 

@@ -108,7 +108,7 @@ def review(desk: Desk, plan: Plan, folder: Path, plan_lines: Sequence[str]) -> R
     request = "\n\n".join(
         [
             f"Prompt: {plan.prompt}", *(["# Its clauses", "\n".join(clauses)] if clauses else []),
-            "# Plan", "\n".join(line for line in plan_lines if not line.startswith("formula")),
+            "# Plan", "\n".join(_seen_by_eye(plan, plan_lines)),
             "# Pictures", f"One sheet, left to right, top to bottom: {', '.join(labels)}" if labels else "none",
             "# Facts from the shape-index images (glass and water have no pixels)",
             "\n".join(facts(folder)) or "none",
@@ -117,6 +117,12 @@ def review(desk: Desk, plan: Plan, folder: Path, plan_lines: Sequence[str]) -> R
     return desk.ask(
         "reviewer", request, lambda text: _read(text, names, len(clauses)), pictures=[sheet] if sheet else []
     )
+
+
+def _seen_by_eye(plan: Plan, plan_lines: Sequence[str]) -> list[str]:
+    """The plan's lines without formulas, which measurements show, nor the head of a table of them alone."""
+    left_out = ("formula", "must ") if all(each.kind == "formula" for each in plan.objectives) else ("formula",)
+    return [line for line in plan_lines if not line.startswith(left_out)]
 
 
 def _read(text: str, names: set[str], clauses: int) -> Review:

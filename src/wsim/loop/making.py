@@ -144,7 +144,7 @@ class Making:
         if tried.verdict.status == "accepted":
             self.crew.look(tried, self.plan)
         if self.best is None or tried.rank > self.best.rank:
-            self.crew.judge(tried, self.plan)
+            self.crew.judge(tried, self.plan, plan_stays=self._was_replanned)
         if tried.verdict.status == "accepted" and self.options.confirm:
             with self.phases.phase("confirm"):
                 tried.verdict = accept(self.run, iteration, tried.earlier, bare_run)
@@ -184,7 +184,7 @@ class Making:
         """
         assert self.best is not None
         if self.crew.has("coder") and last is not self.best:
-            self.crew.judge(self.best, self.plan, self.undone)  # what it asked for did not help
+            self.crew.judge(self.best, self.plan, self.undone, self._was_replanned)  # what it asked for did not help
         by, fault, given_up = "judge", self.best.plan_fault, None
         if not fault:
             try:
@@ -199,13 +199,18 @@ class Making:
             raise given_up
         return self.repairs()
 
+    @property
+    def _was_replanned(self) -> bool:
+        """Whether the planner was asked for another plan: it is once."""
+        return bool(self.run.facts().get("replans"))
+
     def _replans(self, by: str, fault: str) -> bool:
         """Whether the plan is another now: its planner is asked once, and a person agrees.
 
         What was found of the old one stays in the run's folder; the best is to be found anew.
         """
         assert self.best is not None
-        asked = bool(self.run.facts().get("replans")) or not self.crew.desk.answers("planner")
+        asked = self._was_replanned or not self.crew.desk.answers("planner")
         if asked or not self.crew.has("planner"):
             return False
         row = Replan(after=self.best.number, by=by, fault=fault)

@@ -93,7 +93,12 @@ class Schedules(Author):
         target = self._what_of(call, what)
         kind = kind_of(target)
         found = quantities.OF[kind].get(quantity) if isinstance(quantity, str) else None
-        if found is None and quantity in quantities.JOINT and (joints := _joints_of(target)):
+        if (
+            found is None
+            and isinstance(quantity, str)
+            and quantity in quantities.JOINT
+            and (joints := _joints_of(target))
+        ):
             call.fail(f"what = {target.GetName()} has joints of its own; name one: {_some(joints)}")
         if found is None:
             call.fail(

@@ -147,7 +147,18 @@ def _objects(plan: Plan, name: str) -> list[str]:
         "object", "what", "state", "material", "kg/m^3", "kg", "size [m]", "place [m]", "turned [deg]", "m/s",
         "surface m/s", "friction", "restitution", "rolling",
     )  # fmt: skip
-    return table(head, rows) if rows else []
+    return [*table(head, rows), *_moved(plan, name)] if rows else []
+
+
+def _moved(plan: Plan, name: str) -> list[str]:
+    """What drives objects, as the plan has it: the route of a vehicle, the reaches of an arm."""
+    found = []
+    for item in plan.objects:
+        for each in item.registration.actuation if name in ("", item.name) else ():
+            said = each.model_dump(mode="json", exclude_defaults=True, exclude={"kind", "words"})
+            told = ", ".join(f"{key} {json.dumps(value)}" for key, value in said.items())
+            found.append(f"{item.name} is moved by {each.kind}{f': {told}' if told else ''}")
+    return found
 
 
 def _surface(item: PlanObject) -> list[str]:
@@ -235,8 +246,11 @@ def _schedules(plan: Plan, name: str) -> list[str]:
         keys = zip(each.times, each.values or ("",) * len(each.times), strict=True)
         said = "; ".join(f"{number(time)} s: {_value(value)}".rstrip(": ") for time, value in keys)
         event = "" if each.after is None else each.after.model_dump_json()
-        rows.append([each.name, " and ".join(of), each.quantity, said, event])
-    return table(("schedule", "of", "quantity", "by time", "after"), rows) if rows else []
+        point = numbers(each.point) if each.point is not None else ""
+        ramps = "yes" if each.linear or (each.linear is None and each.quantity == "position") else ""
+        rows.append([each.name, " and ".join(of), each.quantity, said, ramps, point, event])
+    head = ("schedule", "of", "quantity", "by time", "straight between", "at point [m]", "after")
+    return table(head, rows) if rows else []
 
 
 def _value(value: float | tuple[float, ...] | str) -> str:

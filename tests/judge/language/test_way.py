@@ -101,6 +101,14 @@ def test_a_hop_as_it_is_set_down_does_not_end_its_rolling():
     assert found("rolls(ball, ramp)", ball).margin[0] == pytest.approx(0.5, abs=0.01)
 
 
+def test_a_wheel_rolls_on_its_radius_however_thin_it_is():
+    wheel = solid("ball", shape("cylinder", RADIUS, RADIUS / 5))
+    rolling = down_the_ramp([3.0])
+    rolling = moving(World(bodies=[wheel], statics=[GROUND, RAMP]), TIME, rolling.body_q[0, :, 0, :3],
+                     v=rolling.body_qd[..., :3], w=rolling.body_qd[..., 3:])  # fmt: skip
+    assert found("rolls(ball)", rolling).margin[0] == pytest.approx(0.5, abs=0.01)
+
+
 def thrown(lands=2.0, off=0.0):
     """A ball thrown up, that touches something at a time, and drifts off its parabola by as much a second squared."""
     ball = solid("ball", shape("sphere", RADIUS), velocity=(2.0, 0.0, 8.0))

@@ -8,6 +8,7 @@ import pytest
 
 from tests.agents.flies import BALL, GROUND, MOVES, answer
 from wsim.agents.planner import read_plan
+from wsim.agents.shorthand import written_out
 from wsim.errors import UserError
 from wsim.plan.asked.covered import missing, not_checked, told, unasked
 from wsim.plan.schema import Plan
@@ -161,6 +162,7 @@ PUSH = {
         ("pushed with 50 N for two seconds", ["shove.values"], ["two seconds"]),
         ("pushed with 60 N for three seconds", ["shove"], ["60 N", "three seconds"]),
         ("stops after half a second", ["shove"], ["stops"]),  # that is seen, not set
+        ("rolls off after half a second", ["shove"], ["rolls"]),
     ],
 )
 def test_a_schedule_answers_for_what_it_does(words: str, by: list[str], gaps: list[str]) -> None:
@@ -199,13 +201,41 @@ def test_what_lands_on_a_scale_lands_on_its_pan(pan: bool, silent: list[str]) ->
     assert [gap.demand.text for gap in missing(made)] == silent
 
 
-@pytest.mark.parametrize(("until", "silent"), [(2.5, []), (2.35, []), (1.5, ["two seconds"])])
-def test_a_window_answers_for_how_long_it_is(until: float, silent: list[str]) -> None:
+@pytest.mark.parametrize(
+    ("always", "until", "silent"),
+    [("always", 2.5, []), ("always", 2.35, []), ("always", 1.5, ["two seconds"]), ("eventually", 2.5, ["two seconds"])],
+)
+def test_a_window_answers_for_how_long_it_holds(always: str, until: float, silent: list[str]) -> None:
     waits = {
         "kind": "formula",
         "object": "ball",
-        "sentence": f"always[0.5, {until}](speed_between(ball, 0 m/s, 1 mm/s))",
+        "sentence": f"{always}[0.5, {until}](speed_between(ball, 0 m/s, 1 mm/s))",
     }
     clauses = [{"words": "A ball waits two seconds", "by": [0]}]
     made = plan(clauses, "A ball waits two seconds.", objectives=[waits], simulation={"duration": 3})
     assert [gap.demand.text for gap in missing(made)] == silent
+
+
+def test_a_spring_elsewhere_lets_no_ball_be_squeezed() -> None:
+    """Nor does one between others make of a stretched ball more than a word."""
+    other = {**BALL, "name": "bob", "position": [3, 0, 2]}
+    coil = {"name": "coil", "kind": "spring", "b": "bob", "anchor_a": [3, 0, 3], "stiffness": 100, "rest_length": 1}
+    clauses = [{"words": "The ball stretches", "by": [0]}]
+    made = plan(clauses, "The ball stretches.", objects=[GROUND, BALL, other], cords=[coil])
+    assert [gap.demand.text for gap in missing(made)] == ["stretches"]
+
+
+@pytest.mark.parametrize("struck", ["left_bob", "right_bob"])
+def test_two_that_hang_on_one_frame_are_two(struck: str) -> None:
+    """Asked is a blow on the right one; that on the left one, which hangs on the same beam, is another."""
+    beam = {"name": "beam", "role": "mechanism", "primitive": "box", "size": [2, 0.1, 0.1], "state": "static",
+            "position": [0, 0, 2], "material": GROUND["material"]}  # fmt: skip
+    bobs = [{**BALL, "name": name, "velocity": [0, 0, 0], "position": [x, 1, 1]}
+            for name, x in (("left_bob", -0.5), ("right_bob", 0.5))]  # fmt: skip
+    hinges = [{"name": f"{bob['name']}_hinge", "kind": "hinge", "child": bob["name"], "parent": "beam", "axis": "X",
+               "anchor": [0, -1, 1]} for bob in bobs]  # fmt: skip
+    asked = {"kind": "collides_with", "object": "ball", "ref": struck}
+    full = written_out(answer(objects=[GROUND, BALL, beam, *bobs], joints=hinges, objectives=[asked],
+                              clauses=[{"words": "The ball hits the right bob", "by": [0]}]))  # fmt: skip
+    made = Plan.model_validate(full | {"prompt": "The ball hits the right bob."})
+    assert [gap.demand.text for gap in missing(made)] == ([] if struck == "right_bob" else ["hits"])

@@ -57,3 +57,11 @@ def test_a_count_of_things_is_not_how_often() -> None:
     made = plan("Three rubber balls are dropped from 1 m.")
     asked = made.model_copy(update={"prompt": "Three rubber balls are dropped from 1 m, three times."})
     assert not_checked(tied(asked)) == [f"'three': {UNFOUND}"]
+
+
+def test_the_numbers_of_a_push_are_its_schedules() -> None:
+    pushed = plan("Push a crate with 60 N for two seconds.")
+    assert not_checked(pushed) == []
+    assert [clause.by for clause in pushed.clauses if clause.words in ("60 N", "two seconds")] == [
+        [pushed.schedules[0].name], [pushed.schedules[0].name]
+    ]  # fmt: skip

@@ -239,3 +239,16 @@ def test_a_world_of_ground_alone_keeps_its_camera(tmp_path):
     a_camera(scene)
     world, motion = recorded(scene, tmp_path)
     assert Framing(world, motion).cameras() == world.cameras
+
+
+def test_more_cameras_than_there_are_sides_are_framed(tmp_path):
+    """Each that shows nothing gets a side of its own, until none is left."""
+    scene = a_world()
+    scene.sphere("ball", radius=0.1, position=(0.0, 0.0, 0.5), velocity=(1.0, 0.0, 2.0))
+    for k in range(24):
+        scene.camera(f"view_{k}", eye=(0.0, -3.0, 1.0), target=(0.0, -6.0, 1.0), width=WIDTH, height=HEIGHT)
+    world = describe(scene.save(tmp_path / "stage.usda"))
+    Simulation(tmp_path / "stage.usda", device="cpu").run(tmp_path / "r.rrd")
+    framed = Framing(world, Motion.of(read(tmp_path / "r.rrd"))).cameras()
+    assert len(framed) == 24
+    assert len({(camera.eye, camera.target) for camera in framed}) > 4

@@ -118,7 +118,7 @@ class Balance:
         left, turned = self._worked_out(wanted, judged, hit)
         pulled = np.concatenate([ties.ropes.error() for ties in self._ties])
         stepped = np.concatenate([step_error(evidence) for evidence in self._copies])
-        turned += (wrong + pulled) / np.stack([mass, arm], axis=2) + stepped[..., None]
+        turned += (wrong + pulled) / np.stack([mass, arm], axis=2) + stepped
         turned += self._changing(wanted, hit)[..., None]
         changes = np.split(both, len(self._copies))
         turned += np.concatenate([unknown(*each) for each in zip(self._copies, changes, strict=True)])

@@ -26,14 +26,15 @@ if TYPE_CHECKING:
 
 
 def step_error(evidence: Evidence) -> Floats:
-    """How much of each body's force over its mass may be due to steps, (T - 1, B) [m/s^2]."""
-    motion, found = evidence.motion, np.zeros((len(evidence.motion.h), len(evidence.motion.mass)))
+    """How much of each body's force over its mass, and torque over m R, may be due to steps, (T - 1, B, 2) [m/s^2]."""
+    motion = evidence.motion
+    found = np.zeros((len(motion.h), len(motion.mass), 2))
     if evidence.world.stepped == "neither":
         return found
     rate, change = np.linalg.norm(motion.w, axis=2), np.linalg.norm(np.diff(motion.w, axis=0), axis=2)
     fastest, h = np.maximum(rate[1:], rate[:-1]), motion.h
-    dt, off = np.minimum(motion.dt, h), np.zeros_like(found)
-    found += _of_constraints(evidence, fastest, dt)
+    dt, off = np.minimum(motion.dt, h), np.zeros_like(fastest)
+    found[..., 1] = _of_constraints(evidence, fastest, dt)  # the push itself is what it is, wherever it acts
     if evidence.world.stepped != "joints":
         return found
     for i, links in enumerate(_chains(evidence)):
@@ -45,7 +46,7 @@ def step_error(evidence: Evidence) -> Floats:
     for unit in np.unique(motion.unit[motion.jointed]):
         rows_of = np.flatnonzero(motion.unit == unit)
         mass = motion.mass[rows_of]  # it ends in any of the bodies, the more the heavier they are
-        found[:, rows_of] += (off[:, rows_of] @ mass)[:, None] * mass / np.sum(mass**2)
+        found[:, rows_of] += ((off[:, rows_of] @ mass)[:, None] * mass / np.sum(mass**2))[..., None]
     return found
 
 

@@ -97,13 +97,21 @@ def _rolls(asked: Rolls, signals: Signals) -> list[Measure]:
     Of all the time that it is there, hops left out: what is set down, held and let go rolls after that.
     """
     here, twist = _near(signals, asked.object, asked.on), signals.qd(asked.object)
-    turned = (np.linalg.norm(twist[..., 3:], axis=-1) * here).sum(axis=1) * signals.solid(asked.object).smallest / 2
+    turned = (np.linalg.norm(twist[..., 3:], axis=-1) * here).sum(axis=1) * _rolling_radius(signals, asked.object)
     made = (np.linalg.norm(twist[..., :3], axis=-1) * here).sum(axis=1)
     share = np.where(made > 0.0, turned / np.where(made > 0.0, made, 1.0), np.nan)
     value = np.repeat(share[:, None], here.shape[1], axis=1)
     source = "1 is rolling without slipping, 0 sliding without turning"
     what, prim = "part of its way that its turning makes up", signals.prim(asked.object)
     return [Measure(what, prim, value, asked.share, "1", asked.share, source, at_most=False)]
+
+
+def _rolling_radius(signals: Signals, name: str) -> float:
+    """Of what is round, a wheel thinner than it is high too; else half of the smallest extent [m]."""
+    shapes = signals.body(name).shapes
+    if len(shapes) == 1 and shapes[0].kind in ("sphere", "cylinder", "capsule"):
+        return float(shapes[0].size[0])
+    return signals.solid(name).smallest / 2
 
 
 @measures(RollsFreely)

@@ -147,7 +147,7 @@ def _gap(demand: Demand, clauses: Sequence[Clause], plan: Plan) -> Gap | None:
     """What is missing of a demand, given the clauses whose words hold it."""
     tied = [clause for clause in clauses if clause.by]
     reasons = [clause.unchecked for clause in clauses if clause.unchecked]
-    springs = demand.base in SPRINGY and tied and _has_spring(plan)
+    springs = demand.base in SPRINGY and any(_of_spring(each, plan) for each in _asked(tied, plan))
     if demand.kind == "beyond" and not demand.denied and not springs:  # whatever it is tied to shows something else
         if plan.stands_in_for is not None or reasons:
             return Gap(demand, next(iter(reasons), "the world stands in for it"), said=True)
@@ -210,9 +210,14 @@ def _shows(clause: Clause, demand: Demand, plan: Plan) -> bool:
     return demand.base in CAUSES and any(field in STARTS for _, field in clause.things)
 
 
-def _has_spring(plan: Plan) -> bool:
-    stiff = any(joint.drive is not None and joint.drive.stiffness > 0.0 for joint in plan.joints)
-    return stiff or any(cord.kind == "spring" for cord in plan.cords)
+def _of_spring(objective: Objective, plan: Plan) -> bool:
+    """Whether an objective is about what a spring, or a joint whose drive is one, ties."""
+    ends = {name for cord in plan.cords if cord.kind == "spring" for name in (cord.a, cord.b)}
+    for joint in plan.joints:
+        if joint.drive is not None and joint.drive.stiffness > 0.0:
+            ends |= {joint.child, joint.parent}
+    named = {objective.object} | (set() if objective.formula is None else set(objective.formula.names()))
+    return bool(named & ends)
 
 
 def _counted(clause: Clause, demand: Demand) -> bool:

@@ -74,11 +74,16 @@ def strangers(plan: Plan, demand: Demand, objectives: Sequence[Objective]) -> st
 
 
 def _whole(plan: Plan, names: Names) -> Names:
-    """Things with all that is tied to them: what hits a lever's paddle hits the lever, and a scale is its pan."""
+    """Things with all that is tied to them: what hits a lever's paddle hits the lever, and a scale is its pan.
+
+    Not what hangs on the same frame as they do: two pendulums are two.
+    """
     ties = [{joint.child, joint.parent} for joint in plan.joints] + [{cord.a, cord.b} for cord in plan.cords]
-    while more := {name for tie in ties if names & tie for name in tie if name is not None} - names:
-        names |= more
-    return names
+    able = {item.name for item in plan.objects if item.state == "dynamic"} | names
+    found = names
+    while more := {name for tie in ties if found & able & tie for name in tie if name is not None} - found:
+        found |= more
+    return found
 
 
 def _said(names: Names) -> str:

@@ -50,7 +50,8 @@ def asks(objective: Objective, demand: Demand) -> bool:
         if any(close(value, demand) for value in _numbers(fields.values())):
             return True
         window = fields.get("window")
-        if demand.unit == "s" and isinstance(window, tuple) and _lasts(window[1] - window[0], demand):
+        holds = demand.unit == "s" and isinstance(node, Always | Mean)
+        if holds and isinstance(window, tuple) and _lasts(window[1] - window[0], demand):
             return True
     return False
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from wsim.plan.asked.demands import REQUIRED, Demand, demands
 from wsim.plan.asked.often import asks_often
 from wsim.plan.asked.shown import SHOWN_BY, shows, shows_not
-from wsim.plan.asked.stated import FIELDS, asks, asks_by_then, close, values
+from wsim.plan.asked.stated import FIELDS, asks, asks_by_then, close, states, values
 from wsim.plan.asked.tokens import tokens
-from wsim.plan.asked.vocabulary import CAUSES, stem
+from wsim.plan.asked.vocabulary import CAUSES, SCHEDULED, stem
 from wsim.plan.schema.clause import OF_JOINTS, WHOLE, Clause
 
 if TYPE_CHECKING:
@@ -61,6 +61,8 @@ def _evidence(plan: Plan, demand: Demand) -> Iterator[int | str]:
             fields |= {"spin": bool(item.angular_velocity_deg), "actuation": bool(item.registration.actuation)}
             yield from (f"{item.name}.{field}" for field, has in fields.items() if has)
         yield from (f"{joint.name}.drive" for joint in plan.joints if joint.drive is not None)
+    if not numbers and demand.base in SCHEDULED and plan.schedules:
+        yield from (schedule.name for schedule in plan.schedules)
     elif not numbers and demand.kind == "state" and base == demand.base:
         yield from (item.name for item in plan.objects if item.primitive != "ground")
 
@@ -84,6 +86,9 @@ def _of_number(plan: Plan, demand: Demand) -> Iterator[int | str]:
         for field in OF_JOINTS[1:]:
             if any(close(value, demand) for value in values(plan, joint.name, field)):
                 yield f"{joint.name}.{field}"
+    for schedule in plan.schedules if demand.unit else ():
+        if states(plan, schedule.name, "", demand):
+            yield schedule.name
     if demand.unit:
         has = asks_by_then if demand.bound else asks
         yield from (k for k, each in enumerate(plan.objectives) if has(each, demand))

@@ -56,9 +56,9 @@ BEYOND = _set(
     """
 )
 # But springs do these, and joints with a drive that is stiff.
-SPRINGY = _set("compress shrink squash squeeze stretch")
-# What a schedule does: "opens after a second", "is lifted at 0.5 m/s". That a thing stops is seen, not set.
-SCHEDULED = CAUSES | _set("accelerate apply close lift lower open raise shut speed twist wait")
+SPRINGY = _set("compress squeeze stretch")
+# What a schedule does: "opens after a second", "is lifted at 0.5 m/s". How a thing goes on then, or stops, is seen.
+SCHEDULED = CAUSES - _set("roll run slide swing") | _set("apply close lift lower open raise shut twist wait")
 IRREGULAR = {
     "ran": "run", "fell": "fall", "fallen": "fall", "slid": "slide", "swung": "swing", "spun": "spin",
     "struck": "strike", "threw": "throw", "thrown": "throw", "shot": "shoot", "flew": "fly", "flown": "fly",

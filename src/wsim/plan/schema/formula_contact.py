@@ -40,7 +40,7 @@ class StaysOn(Predicate):
 
 
 class WeighsOn(Predicate):
-    """Contact forces, of which the other gives some, carry the object's weight, less what its fluid carries."""
+    """Contact forces, some of them of the other, are the object's weight less what fluid bears, to a share of it."""
 
     op: Literal["weighs_on"] = "weighs_on"
     alone: ClassVar[Literal["finally"]] = "finally"

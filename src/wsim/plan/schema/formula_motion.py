@@ -79,7 +79,7 @@ class GoesDown(Predicate):
 
 
 class Rolls(Predicate):
-    """The object's turning makes up at least a share of its way, on another object until it leaves that."""
+    """The object's turning makes up at least a share of its way, on another object while it is there."""
 
     op: Literal["rolls"] = "rolls"
     object: Named

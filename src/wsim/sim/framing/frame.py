@@ -132,7 +132,8 @@ class Framing:
             there, worth = camera, 0.0  # what is seen from there is seen
         if not framed or worth < 0.5 * WELL:
             tried = views(camera, self._scenario, self._around)
-            other, found = self._best(view for view in tried if all(_apart(view, one) >= APART for one in framed))
+            elsewhere = [view for view in tried if all(_apart(view, one) >= APART for one in framed)]
+            other, found = self._best(elsewhere) if elsewhere else (camera, 0.0)
             if found > worth:
                 there, worth = other, found
         if shows and own >= KEPT * worth / OWN:
