@@ -21,6 +21,7 @@ from wsim.solvers.sph_domain import domain_of
 from wsim.solvers.sph_faces import FixedFaces
 from wsim.solvers.sph_faults import in_words
 from wsim.solvers.sph_particles import SortedParticles
+from wsim.solvers.sph_push import BodyPush
 from wsim.solvers.sph_search import ParticleSearch
 
 LEAST_LANES = 32
@@ -143,6 +144,7 @@ class SolverSPH(SolverBase):
             solids.world[fixed:],
             self.wall_position,
             self.world_count,
+            solids.crowd((1.0 + self.config.skin) * self.config.support),
         )
         self.programs = self.search.programs
         self.faces = FixedFaces(model, self.world_count, containers)
@@ -152,7 +154,7 @@ class SolverSPH(SolverBase):
         self.pressure = wp.empty(self.fluid_count, dtype=float)
         self.body_position = wp.zeros(bodies, dtype=wp.vec3)
         self.body_velocity = wp.zeros(bodies, dtype=wp.vec3)
-        self.body_particle_force = wp.zeros(bodies, dtype=wp.vec3)
+        self.push = BodyPush(self.search, self.body_owner)
         self._gather_solid(walls, self.wall_position, wp.zeros(self.wall_count, dtype=wp.vec3), self.wall_volume)
         # As many lanes as each has particles of the largest body to add up, and add_body_wrench lanes.
         largest = int(np.diff(self.body_first.numpy()).max(initial=0))
@@ -160,17 +162,16 @@ class SolverSPH(SolverBase):
         self.lane_wrench = wp.zeros((self.model.body_count, self.lanes), dtype=wp.spatial_vector)
         self.body_wrench = wp.zeros(self.model.body_count, dtype=wp.spatial_vector)
         self._on_walls = wp.zeros(self.fluid_count if self.wall_count else 0, dtype=wp.vec3)
-        self._in_gaps = wp.zeros(bodies if self.wall_count else 0, dtype=wp.vec3)
         first = self.search.fluid.world_first  # Newton's worlds follow one another
         own = [max(LEAST_LANES, math.isqrt(count)) for count in np.diff(first).tolist()]
-        self._world_first_of_bodies = wp.array(self.search.bodies.world_first, dtype=int)
         self._world_first, self._lanes_of_walls = wp.array(first, dtype=int), wp.array(own, dtype=int)
         self._wall_lanes = wp.zeros((self.world_count, max(own)), dtype=wp.vec3d)
         self._wall_impulse = wp.zeros(self.world_count, dtype=wp.vec3d)
 
     def reset_search(self) -> None:
-        """Forget the neighbour lists; for a state that did not come from the last step."""
+        """Forget the neighbour lists, and the water in gaps; for a state that did not come from the last step."""
         self.search.stale = True
+        self.push.forget()
 
     def take_wall_impulse(self) -> np.ndarray:
         """Impulse that each world's fluid gave to all that stands still since the last call, (W, 3) [N s]."""
@@ -294,6 +295,7 @@ class SolverSPH(SolverBase):
             outputs=[fluid.point, fluid.motion],
         )
         self._gather_solid(self.search.bodies, self.body_position, self.body_velocity, self.body_volume)
+        self.push.gather()
 
     def _gather_solid(self, solid: SortedParticles, *arrays: wp.array) -> None:
         if solid.count:
@@ -341,13 +343,7 @@ class SolverSPH(SolverBase):
         search = self.search
         fluid, walls, bodies = (kind.species for kind in (search.fluid, search.walls, search.bodies))
         method = [search.grid, self.method, self.rest_density, self.viscosity]
-        if self.body_particle_count:
-            launch_shared(
-                self.programs.push,
-                dim=self.body_particle_count,
-                inputs=[*method, fluid, walls, bodies],
-                outputs=[self.body_particle_force, self._in_gaps],
-            )
+        self.push.sum(self.method, self.rest_density, self.viscosity, self.model.gravity)
         launch_shared(
             self.programs.momentum,
             dim=self.fluid_count,
@@ -360,7 +356,7 @@ class SolverSPH(SolverBase):
                 self.faces.keep_out(self.search.fluid.world, dt, *at, self._on_walls)
             self._add_to_walls(self._on_walls, self._world_first, dt)
             if self.body_particle_count:
-                self._add_to_walls(self._in_gaps, self._world_first_of_bodies, dt)
+                self._add_to_walls(self.push.on_walls, self.push.world_first, dt)
 
     def _add_to_walls(self, force: wp.array, world_first: wp.array, dt: float) -> None:
         """Add particles' forces on the walls, in the order of worlds, to the impulse on each world's."""
@@ -386,7 +382,7 @@ class SolverSPH(SolverBase):
             inputs=[
                 self.search.grid,
                 self.body_first,
-                self.body_particle_force,
+                self.push.force,
                 self.body_local,
                 state_in.body_q,
                 self.model.body_com,

@@ -10,7 +10,7 @@ import warp as wp
 
 from wsim.kernels.sph import neighbors as neighbor_kernels
 from wsim.kernels.sph.programs import Programs
-from wsim.kernels.sph.species import BODIES, WALLS
+from wsim.kernels.sph.species import BODIES, FLUID, WALLS
 from wsim.solvers.launch import launch_shared
 from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.sph_domain import make_grid
@@ -34,6 +34,7 @@ class ParticleSearch:
         body_world: World of each particle of a body.
         wall_position: Where the walls' particles are [m].
         world_count: Number of worlds.
+        crowd: Most particles of its own body that any has within reach.
 
     Attributes:
         fluid, walls, bodies: The particles of each kind.
@@ -49,6 +50,7 @@ class ParticleSearch:
         body_world: np.ndarray,
         wall_position: wp.array,
         world_count: int,
+        crowd: int,
     ) -> None:
         self.cuda = wall_position.device.is_cuda
         self.skin = 0.0 if self.cuda else config.skin * config.support
@@ -56,8 +58,8 @@ class ParticleSearch:
         self.grid = make_grid(config, *domain, config.support + self.skin, self.cuda, world_count)
         capacity = 0 if self.cuda else _capacity(config, self.grid.support)
         self.fluid, self.walls, self.bodies = (
-            SortedParticles(world, self.grid, world_count, capacity, solid)
-            for world, solid in ((fluid_world, False), (wall_world, True), (body_world, True))
+            SortedParticles(world, self.grid, world_count, capacity and capacity + more, kind)
+            for world, more, kind in ((fluid_world, 0, FLUID), (wall_world, 0, WALLS), (body_world, crowd, BODIES))
         )
         self.moving = [kind for kind in (self.fluid, self.bodies) if kind.count]
         self.solid = [kind for kind in (self.walls, self.bodies) if kind.count]

@@ -82,6 +82,21 @@ def test_the_force_of_one_particle_is_the_pairs():
     assert force == pytest.approx([0.0, 0.0, -cell * (1000.0 * cell / 1002.0) * (p + under) * slope], rel=1e-4)
 
 
+@pytest.mark.parametrize(("edges", "others"), [(EDGES, 0), ((0.2, 0.2, 0.1), 0), (EDGES, 1)])
+def test_water_lifts_what_lies_flush_on_the_floor(edges, others, monkeypatch):
+    """With the floor's particles it is the lift of Archimedes, of a box of ten particles a side, too, whose middle no
+    fluid is near, and of boxes on each other; without, as in recordings of before, the water presses it down."""
+    for name in ("tests.judge.checks.test_lift", __name__):
+        monkeypatch.setattr(f"{name}.EDGES", edges)
+    on_top = [np.array([0.0, 0.0, 1.5 * edges[2]])] * others
+    low = told(immersed(0.0, at=(0.0, 0.0), others=on_top), body_particles={
+        f"/World/box{n}": round(np.prod(edges) / SPACING**3) for n in range(others + 1)
+    })  # fmt: skip
+    force = push_on(floored(low))
+    assert force[:, 2] == pytest.approx(1000.0 * G * np.prod(edges), rel=0.03)
+    assert push_on(low)[0, 2] < 0.0
+
+
 def test_the_force_in_a_gap_is_the_pairs():
     """One particle of a box, one of a wall under it, one of fluid beside them, by hand: both pressures, one slope."""
     recording = told(immersed(), body_particles={"/World/box0": 1})

@@ -26,8 +26,8 @@ from wsim.geometry.filled import Samples
 from wsim.geometry.rotations import rotate
 from wsim.judge.books.filling import filled
 from wsim.judge.books.fluids import particle_mass
-from wsim.judge.books.gaps import Solid, force_in_gaps, joined
-from wsim.judge.books.sph import Method, Particles, Taken, pairs_within, taken
+from wsim.judge.books.gaps import WALL, Solid, forces_in_gaps
+from wsim.judge.books.sph import Method, Particles, Taken, joined, pairs_within, taken
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -65,16 +65,20 @@ class FluidPush:
         )
         self.filled = _filled(evidence)
         solids = evidence.recording.solids
-        self._walls = None
-        if solids:
-            walls = _in_double(solids.walls)
-            self._walls = Carried(walls.position, walls.volume, np.zeros_like(walls.position))
+        self._walls = _in_double(solids.walls) if solids else None
 
     def at(self, k: int, frame: int, bodies: Sequence[int]) -> Floats:
         """Force on each of some bodies [N], (len(bodies), 3), at the fluids' frame k, the recording's `frame`."""
         fluid = self._particles(k)
-        carried = [None if each is None else self._carried(i, frame, each) for i, each in enumerate(self.filled)]
-        return np.array([self._on(i, carried, fluid) for i in bodies]).reshape(-1, 3)
+        carried = {i: self._carried(i, frame, each) for i, each in enumerate(self.filled) if each is not None}
+        wanted = [i for i in (bodies if self._walls is None else carried) if i in carried]
+        forces = np.full((len(self.filled), 3), math.nan)
+        found = {}
+        for i in wanted:
+            forces[i], found[i] = self._in_fluid(carried[i], fluid)
+        if self._walls is not None and wanted:
+            forces += forces_in_gaps(self._method, self._solid(self._walls, carried, found, fluid), len(self.filled))
+        return forces[list(bodies)]
 
     def _particles(self, k: int) -> Particles:
         place, velocity, density = (
@@ -84,23 +88,31 @@ class FluidPush:
         pressure = self._method.sound**2 * (density - self._method.density)
         return Particles(place, velocity, pressure, self._mass / density)
 
-    def _on(self, i: int, carried: Sequence[Carried | None], fluid: Particles) -> Floats:
-        body, method, reach = carried[i], self._method, self._method.reach
-        if body is None:
-            return np.full(3, math.nan)
-        place, velocity, volume = body.place, body.velocity, body.volume
-        low, high = place.min(axis=0), place.max(axis=0)
-        near = fluid.about(low - reach, high + reach)
+    def _in_fluid(self, body: Carried, fluid: Particles) -> tuple[Floats, Taken]:
+        """What fluid that is near a body gives it, (3,) [N], and what its particles take from it."""
+        reach, place = self._method.reach, body.place
+        near = fluid.about(place.min(axis=0) - reach, place.max(axis=0) + reach)
         tree, total, parts = cKDTree(near.place), np.zeros(3), []
         for part, pairs in pairs_within(tree, place, reach):
-            parts.append(taken(method, near, place[part], pairs))
-            total += self._force(near, place[part], velocity[part], volume[part], parts[-1], pairs)
-        if self._walls is not None:
-            about = fluid.about(low - 2.0 * reach, high + 2.0 * reach)
-            solids = [self._walls, *(other for j, other in enumerate(carried) if other is not None and j != i)]
-            others = Solid.near(method, about, *_within(solids, low - reach, high + reach))
-            total += force_in_gaps(method, Solid(place, volume, joined(parts)), others)
-        return total
+            parts.append(taken(self._method, near, place[part], pairs))
+            total += self._force(near, place[part], body.velocity[part], body.volume[part], parts[-1], pairs)
+        return total, joined(parts)
+
+    def _solid(self, walls: Samples, carried: dict[int, Carried], found: dict[int, Taken], fluid: Particles) -> Solid:
+        """All bodies that have particles, and the walls within their reach."""
+        reach, near = self._method.reach, np.zeros(len(walls.volume), dtype=bool)
+        for body in carried.values():
+            low, high = body.place.min(axis=0) - reach, body.place.max(axis=0) + reach
+            near |= ((walls.position >= low) & (walls.position <= high)).all(axis=1)
+        place = walls.position[near]
+        standing = Carried(place, walls.volume[near], np.zeros_like(place))
+        of_walls = self._in_fluid(standing, fluid)[1] if len(place) else joined([])
+        solids, takes = [*carried.values(), standing], [*(found[i] for i in carried), of_walls]
+        owner = np.repeat([*carried, WALL], [len(each.volume) for each in solids])
+        return Solid(
+            np.concatenate([each.place for each in solids]), np.concatenate([each.volume for each in solids]), owner,
+            joined(takes),
+        )  # fmt: skip
 
     def _carried(self, i: int, frame: int, samples: Samples) -> Carried:
         q = self._evidence.body_q[frame, i].astype(np.float64)
@@ -127,16 +139,6 @@ class FluidPush:
         slip = past - 2.0 * np.einsum("ij,ij->i", past, solid.facing)[:, None] * solid.facing
         share = m.artificial / max(m.artificial + m.laminar, 1e-300)
         return np.asarray(velocity + share * slip - (1.0 - share) * past, dtype=np.float64)
-
-
-def _within(solids: Sequence[Carried], low: Floats, high: Floats) -> tuple[Floats, Floats]:
-    """Places (n, 3) and volumes (n,) of the particles in a box."""
-    places, volumes = [], []
-    for solid in solids:
-        inside = ((solid.place >= low) & (solid.place <= high)).all(axis=1)
-        places.append(solid.place[inside])
-        volumes.append(solid.volume[inside])
-    return np.concatenate(places), np.concatenate(volumes)
 
 
 def _in_double(particles: SolidParticles) -> Samples:

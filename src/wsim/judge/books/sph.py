@@ -16,7 +16,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -117,3 +117,10 @@ def taken(method: Method, fluid: Particles, place: Floats, pairs: Any) -> Taken:
     facing = -summed(way)
     facing /= np.maximum(np.linalg.norm(facing, axis=1), 1e-300)[:, None]
     return Taken(total[:, 0] > 0.0, np.maximum(pressure, -method.background), summed(fluid.velocity[f]) / some, facing)
+
+
+def joined(parts: Sequence[Taken]) -> Taken:
+    """Of particles part by part."""
+    none = Taken(np.zeros(0, dtype=bool), np.zeros(0), np.zeros((0, 3)), np.zeros((0, 3)))
+    names = ("wet", "pressure", "velocity", "facing")
+    return Taken(*(np.concatenate([getattr(part, name) for part in (none, *parts)]) for name in names))

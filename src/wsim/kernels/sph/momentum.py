@@ -1,4 +1,4 @@
-"""Momentum equation, the step of velocity and position, and the fluid's push on bodies."""
+"""Momentum equation, and the step of velocity and position."""
 
 import warp as wp
 
@@ -6,7 +6,7 @@ from wsim.kernels.sph.density import Method
 from wsim.kernels.sph.grid import Grid, wrap
 from wsim.kernels.sph.pair_sums import AtWalls, PairSums
 from wsim.kernels.sph.records import load_record
-from wsim.kernels.sph.species import BODIES, DRY, FLUID, WALLS, Species, is_near
+from wsim.kernels.sph.species import BODIES, FLUID, WALLS, Species, is_near
 
 # Of h^2: keeps two particles at one place from dividing by zero. Monaghan's 0.01 would weaken viscosity by 1.5 %.
 COINCIDENT = wp.constant(1.0e-4)
@@ -16,7 +16,7 @@ ON_FACE = wp.constant(0.5)
 
 
 @wp.func
-def _viscosities(method: Method, rest_density: float, viscosity: float) -> wp.vec3:
+def viscosities(method: Method, rest_density: float, viscosity: float) -> wp.vec3:
     """Artificial and laminar factor of a pair's approach, and what is added to r^2."""
     artificial = method.artificial_viscosity * method.h * method.speed_of_sound * rest_density
     return wp.vec3(artificial, method.laminar_factor * viscosity, COINCIDENT * method.h * method.h)
@@ -81,7 +81,7 @@ def make_momentum(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         x = wp.vec3(p[0], p[1], p[2])
         v = wp.vec3(m[0], m[1], m[2])
         world = fluid.world[i]
-        viscous = _viscosities(method, rest_density[world], viscosity[world])
+        viscous = viscosities(method, rest_density[world], viscosity[world])
         own = m[3] + 2.0 * method.background_pressure
         total = of_fluid(grid, fluid, fluid, s, world, method.shape, x, v, own, viscous)
         at_walls = AtWalls()
@@ -101,57 +101,3 @@ def make_momentum(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         position[i] = wrap(grid, x + dt * v)
 
     return momentum
-
-
-def make_push(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
-    """The kernel that sums the fluid's forces on the particles of bodies, given the kinds of solids."""
-    of_fluid, of_walls, of_bodies = sums.force[FLUID], sums.force_in_gap[WALLS], sums.force_in_gap[BODIES]
-
-    @wp.kernel(**sums.options)
-    def push(
-        # Data in:
-        first: int,
-        grid: Grid,
-        method: Method,
-        rest_density: wp.array(dtype=float),
-        viscosity: wp.array(dtype=float),
-        fluid: Species,
-        walls: Species,
-        bodies: Species,
-        # Data out:
-        force: wp.array(dtype=wp.vec3),
-        on_walls: wp.array(dtype=wp.vec3),
-    ):
-        """The fluid's force on each particle of a body, and its share of that on the walls [N], in original order.
-
-        The opposite of what the fluid feels, and in a gap too narrow for a particle the pressure of the water in there:
-
-        F_b = -V_b sum V_s (p_b + p_s) grad W
-
-        over walls and other bodies that are wet as b is. Near them half of the neighbours of b are none of the fluid's:
-        without these a ball on the floor has two fifths of its lift. Particles of one body give each other opposite
-        forces along one line, which its wrench does not have.
-        """
-        s = first + wp.tid()
-        p = load_record(bodies.point, s)
-        m = load_record(bodies.motion, s)
-        x = wp.vec3(p[0], p[1], p[2])
-        v = wp.vec3(m[0], m[1], m[2])
-        i = bodies.order[s]
-        world = bodies.world[i]
-        total, in_gap = wp.vec3(0.0, 0.0, 0.0), wp.vec3(0.0, 0.0, 0.0)
-        if m[3] > 0.5 * DRY:
-            viscous = _viscosities(method, rest_density[world], viscosity[world])
-            own = m[3] + 2.0 * method.background_pressure
-            total = of_fluid(grid, bodies, fluid, s, world, method.shape, x, v, own, viscous)
-            f = load_record(bodies.facing, s)
-            facing = wp.vec3(f[0], f[1], f[2])
-            total += of_bodies(grid, bodies, bodies, s, world, method.shape, x, facing, own, viscous)
-            if wp.static(WALLS in solids):
-                if is_near(grid, walls, world, x):
-                    in_gap = of_walls(grid, bodies, walls, s, world, method.shape, x, facing, own, viscous)
-        force[i] = p[3] * (total + in_gap)
-        if wp.static(WALLS in solids):
-            on_walls[i] = -p[3] * in_gap
-
-    return push

@@ -15,6 +15,7 @@ from typing import Any
 
 import warp as wp
 
+from wsim.kernels.sph.gap_sums import ACROSS, BEYOND, GAP, SEEPING, WAY, between
 from wsim.kernels.sph.grid import Grid
 from wsim.kernels.sph.rows import walk
 from wsim.kernels.sph.species import BODIES, DRY, FLUID, WALLS, Species
@@ -55,7 +56,7 @@ _RUN = """
 #if defined(__CUDA_ARCH__)
     #pragma unroll UNROLL
 #else
-    #pragma clang loop vectorize(enable) interleave(enable)
+    VECTORIZE
 #endif
     for (int k = first; k < last; ++k) {
         const int j = INDEX;
@@ -174,28 +175,6 @@ _MOMENTUM = (
     "return wp::vec_t<3, float>(slope_norm * a0, slope_norm * a1, slope_norm * a2);",
 )
 
-# Of the way to another solid: fluid that lies farther off behind it is none between the two.
-BEYOND = 0.5
-
-_GAP = (
-    """
-    const Record* __restrict__ facings = reinterpret_cast<const Record*>(other.facing.data);
-    const float v0 = v[0], v1 = v[1], v2 = v[2];
-    float a0 = 0.0f, a1 = 0.0f, a2 = 0.0f;
-    """,
-    """
-            const Record f = WSIM_LOAD(facings, j);
-            const float own_way = -(v0 * d0 + v1 * d1 + v2 * d2), its_way = f.x * d0 + f.y * d1 + f.z * d2;
-            const bool between = (own_way < its_way ? own_way : its_way) > -BEYOND * sqrtf(r2);
-            const bool wet = n.w > 0.5f * DRY_PRESSURE;
-            const float force = wet && between ? q.w * (t2 * t) * (p + n.w) : 0.0f;
-            a0 -= force * d0;
-            a1 -= force * d1;
-            a2 -= force * d2;
-    """,
-    "return wp::vec_t<3, float>(slope_norm * a0, slope_norm * a1, slope_norm * a2);",
-)
-
 _MOMENTUM_AT_WALLS = (
     _MOMENTUM[0] + "float share = 0.0f, n0 = 0.0f, n1 = 0.0f, n2 = 0.0f;",
     _MOMENTUM[1]
@@ -249,7 +228,10 @@ class PairSums:
         extrapolation: `Extrapolated`, over fluid.
         force: Force on a particle per volume, over fluid or bodies.
         force_at_walls: `AtWalls`, over walls.
-        force_in_gap: Force on a body's particle per volume, over walls or bodies that are wet, too.
+        way: Sum of W times the way to them, over walls or other bodies.
+        force_in_gap: Force on a body's particle per volume, over walls or other bodies, and how many of them are across
+            a gap, wet or dry. Takes its pressure and the least that there is as v, the weight of the fluid as `common`.
+        seeping: Sums of W and of W times pressure, and the fewest hops, over what its own body's particles hand on.
         find: Write the neighbours of one kind behind `start` others, but `itself`; returns how many there are then.
             For lists alone.
         options: What `wp.kernel` is to do with a kernel that sums.
@@ -262,7 +244,9 @@ class PairSums:
     extrapolation: wp.Function
     force: dict[int, wp.Function]
     force_at_walls: wp.Function
+    way: dict[int, wp.Function]
     force_in_gap: dict[int, wp.Function]
+    seeping: wp.Function
     find: wp.Function
     options: dict[str, Any]
 
@@ -293,6 +277,10 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool,
         before, term, after = parts
         loop = _RUN.replace("INDEX", "entries[k]" if lists else "k")
         loop = loop.replace("IF_NEAR", "if (r2 < support2)" if branch else "")
+        # The least of a loop is not found so, without a promise that it is a number.
+        loop = loop.replace(
+            "VECTORIZE", "" if parts is SEEPING else "#pragma clang loop vectorize(enable) interleave(enable)"
+        )
         loop = loop.replace("UNROLL", "2" if branch else "1")
         loop = loop.replace("IMAGES", _images(periodic)).replace("TERM", term.replace("DRY_PRESSURE", f"{DRY:e}f"))
         loop = loop.replace("BEYOND", f"{BEYOND:e}f")
@@ -332,7 +320,9 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool,
         extrapolation=total(_EXTRAPOLATION, Extrapolated),
         force={kind: total(_MOMENTUM, wp.vec3, kind) for kind in (FLUID, BODIES)},
         force_at_walls=total(_MOMENTUM_AT_WALLS, AtWalls, WALLS),
-        force_in_gap={kind: total(_GAP, wp.vec3, kind) for kind in (WALLS, BODIES)},
+        way={kind: total(between(WAY, words), wp.vec3, kind) for kind, words in ACROSS.items()},
+        force_in_gap={kind: total(between(GAP, words), wp.vec4, kind) for kind, words in ACROSS.items()},
+        seeping=total(SEEPING, wp.vec3, BODIES),
         find=find,
         options=options,
     )
