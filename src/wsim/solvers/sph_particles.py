@@ -8,7 +8,7 @@ import numpy as np
 import warp as wp
 
 from wsim.kernels.sph import grid as grid_kernels
-from wsim.kernels.sph.species import BODIES, DRY, FLUID, Species, mark_near
+from wsim.kernels.sph.species import BODIES, FLUID, Species, mark_near
 from wsim.solvers.sph_domain import blocks_of, cells_of
 
 
@@ -28,7 +28,7 @@ class SortedParticles:
         order: Original index of each sorted one, shape (n,).
         point: Position [m] and volume [m^3] of each sorted one, shape (n,).
         motion: Velocity [m/s] and pressure [Pa] of each sorted one, shape (n,).
-        facing: Of solids, as `across` and `seeped` of bodies: see `Species`.
+        facing: Of solids, as `across` and `handed` of bodies: see `Species`.
         species: What kernels take.
     """
 
@@ -53,7 +53,7 @@ class SortedParticles:
         self.species.point, self.species.motion = self.point, self.motion
         self.species.facing = self.facing = wp.zeros(0 if kind == FLUID else n, dtype=wp.vec4)
         self.species.across = self.across = wp.zeros(n if kind == BODIES else 0, dtype=wp.vec4)
-        self.species.seeped = self.seeped = wp.full(n if kind == BODIES else 0, DRY, dtype=float)
+        self.species.handed = self.handed = wp.zeros(n if kind == BODIES else 0, dtype=wp.vec4)
         self.species.cell_start, self.species.near = self.cell_start, self.near
         self.species.entry, self.species.capacity = wp.empty(n * capacity, dtype=int), capacity
         self.species.entry_count = wp.zeros(n if capacity else 0, dtype=wp.vec3i)

@@ -23,7 +23,7 @@ class BodyPush:
         force: On each particle [N], shape (n,).
         on_walls: What each gives to walls across a gap [N], shape (n,); empty where there are none.
         world_first: First particle of each world, and past the last one's.
-        handed: Pressure [Pa] that each hands on to others at a gap, and over how many it came, shape (n,).
+        handed: What each hands on to the next step, shape (n,): see `wsim.kernels.sph.push`.
     """
 
     def __init__(self, search: ParticleSearch, owner: wp.array) -> None:
@@ -31,11 +31,11 @@ class BodyPush:
         self.force = wp.zeros(len(owner), dtype=wp.vec3)
         self.on_walls = wp.zeros(len(owner) if search.walls.count else 0, dtype=wp.vec3)
         self.world_first = wp.array(search.bodies.world_first, dtype=int)
-        self.handed = wp.full(len(owner), wp.vec2(DRY, 0.0), dtype=wp.vec2)
+        self.handed = wp.full(len(owner), wp.vec3(DRY, 0.0, 1.0), dtype=wp.vec3)
 
     def forget(self) -> None:
         """Let the gaps be dry, until water gets there."""
-        self.handed.fill_(wp.vec2(DRY, 0.0))
+        self.handed.fill_(wp.vec3(DRY, 0.0, 1.0))
 
     def gather(self) -> None:
         """Copy what the sums need into sorted order."""
@@ -45,7 +45,7 @@ class BodyPush:
                 push_kernels.gather_bodies,
                 dim=bodies.count,
                 inputs=[bodies.order, self._owner, self.handed],
-                outputs=[bodies.facing, bodies.across, bodies.seeped],
+                outputs=[bodies.handed],
             )
 
     def sum(self, method: Any, rest_density: wp.array, viscosity: wp.array, gravity: wp.array) -> None:

@@ -10,6 +10,7 @@ from tests.judge.theory import G, ask, ball, box, only, with_world
 from wsim.geometry.filled import box_lattice
 from wsim.judge.books.filling import filled
 from wsim.judge.books.fluid_push import FluidPush
+from wsim.judge.books.gaps import FAR_ACROSS
 from wsim.judge.books.sph import Method
 from wsim.judge.checks.fluid_push import CheckFluidPush
 from wsim.judge.evidence.evidence import Evidence
@@ -98,23 +99,32 @@ def test_water_lifts_what_lies_flush_on_the_floor(edges, others, monkeypatch):
 
 
 def test_the_force_in_a_gap_is_the_pairs():
-    """One particle of a box, one of a wall under it, one of fluid beside them, by hand: both pressures, one slope."""
-    recording = told(immersed(), body_particles={"/World/box0": 1})
-    small = with_world(recording, bodies=[box("box0", size=(SPACING,) * 3)])
-    water, at = small.fluids[WATER], small.body_q[:, 0, :3]
+    """Two particles of a box, one of a wall under them, one of fluid beside the lower, by hand.
+
+    Nothing but the wall holds the lower one up against the upper one: what it lacks is made up for.
+    """
+    recording = told(immersed(), body_particles={"/World/box0": 2})
+    small = with_world(recording, bodies=[box("box0", size=(SPACING, SPACING, 2.0 * SPACING))])
+    lower = small.body_q[:, 0, :3] - np.array([0.0, 0.0, 0.5 * SPACING])
+    water, thick = small.fluids[WATER], 2e-6  # [m^3]
     rho = np.full((len(water.time), 1), 1002.0, dtype=np.float32)
-    aside = (at + np.array([1.1 * SPACING, 0.0, 0.0]))[:, None].astype(np.float32)
-    one = replace(water, position=aside, velocity=0.0 * aside, density=rho)
-    wet = replace(small, fluids={WATER: one})
+    aside = (lower + np.array([1.1 * SPACING, 0.0, 0.0]))[:, None].astype(np.float32)
+    wet = replace(small, fluids={WATER: replace(water, position=aside, velocity=0.0 * aside, density=rho)})
 
     def with_wall(way):
-        wall = SolidParticles((at[:1] + np.array(way) * SPACING).astype(np.float32), np.full(1, 2e-6, np.float32))
+        wall = SolidParticles((lower[:1] + np.array(way) * SPACING).astype(np.float32), np.full(1, thick, np.float32))
         return push_on(replace(wet, solids=Solids(wall)))[0] - push_on(wet)[0]
 
-    p, q, cell = SOUND**2 * 2.0, SPACING / H, SPACING**3
-    slope = 21.0 / (16.0 * np.pi * H**3) * 5.0 * q * (1.0 - q / 2.0) ** 3 / H  # -dW/dr
-    up = cell * 2e-6 * (2.0 * p + 1000.0 * G * SPACING) * slope
-    assert with_wall((0.0, 0.0, -1.0)) == pytest.approx([0.0, 0.0, up], rel=1e-4, abs=1e-6 * up)
+    def slope(spacings):  # -dW/dr
+        q = spacings * SPACING / H
+        return 21.0 / (16.0 * np.pi * H**3) * 5.0 * q * (1.0 - q / 2.0) ** 3 / H
+
+    p, cell = SOUND**2 * 2.0, SPACING**3
+    own, other = cell * slope(1.0), thick * slope(1.7)
+    longer = own * other / (other**2 + FAR_ACROSS**2 * own**2)
+    up = longer * cell * other * (2.0 * p + 1000.0 * G * 1.7 * SPACING)
+    assert longer > 5.0
+    assert with_wall((0.0, 0.0, -1.7)) == pytest.approx([0.0, 0.0, up], rel=1e-3, abs=1e-6 * up)
     # Of one with its fluid behind the other, of one out of reach of all fluid, and of one out of the body's reach.
     for way in ((1.05, 0.0, 0.0), (-1.6, 0.0, 0.0), (2.7, 0.0, 0.0)):
         assert np.abs(with_wall(way)).max() < 1e-6 * up

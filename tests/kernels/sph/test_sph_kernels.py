@@ -152,7 +152,7 @@ def test_walking_the_cells_gives_the_sums_of_the_lists(periodic):
             density, viscosity = (wp.full(2, v, dtype=float) for v in (1000.0, 2.0))
             gravity = wp.array([(0.0, 0.0, -9.8)] * 2, dtype=wp.vec3)
             pressure, pushes = wp.zeros(n, dtype=float), [wp.zeros(kinds[2].count, dtype=wp.vec3) for _ in range(2)]
-            owner, handed, gaps = handed_on(kinds[2])
+            owner, handed = handed_on(kinds[2])
             moved, mass = [wp.zeros(n, dtype=wp.vec3) for _ in range(3)], wp.full(n, 0.1, dtype=float)
             shared = [0, grid, method, density]
             wp.launch(programs.compress, kinds[1].count, [*shared, gravity, fluid, walls], [walls.motion])
@@ -160,7 +160,7 @@ def test_walking_the_cells_gives_the_sums_of_the_lists(periodic):
             assert (given_back != 0.0).any()
             inputs = [*shared, gravity, fluid, walls, bodies, 1e-3]
             wp.launch(programs.continuity, n, inputs, [pressure])
-            wp.launch(gather_bodies, kinds[2].count, [bodies.order, owner, handed], gaps)
+            wp.launch(gather_bodies, kinds[2].count, [bodies.order, owner, handed], [bodies.handed])
             for kind in kinds[1:]:
                 inputs = [*shared, viscosity, gravity, fluid, kind.species]
                 wp.launch(programs.extrapolate, kind.count, inputs, [kind.motion, kind.facing])
@@ -180,13 +180,13 @@ def test_walking_the_cells_gives_the_sums_of_the_lists(periodic):
         assert np.abs(of_walk - of_lists).max() < 2e-5 * np.abs(of_lists).max()
 
 
-def handed_on(kind: SortedParticles) -> tuple[wp.array, wp.array, list[wp.array]]:
-    """Particles of four bodies, half of which handed pressures on; and the arrays that these are gathered into."""
+def handed_on(kind: SortedParticles) -> tuple[wp.array, wp.array]:
+    """Bodies of particles, four in all, and what these handed on: half of them nothing."""
     rng = np.random.default_rng(11)
     owner = wp.array(rng.integers(0, 4, kind.count).astype(np.int32), dtype=int)
-    values = np.column_stack([rng.uniform(0.0, 2.0, kind.count), rng.integers(0, 70, kind.count)])
-    values[rng.random(kind.count) < 0.5] = DRY, 0.0
-    return owner, wp.array(values.astype(np.float32), dtype=wp.vec2), [kind.facing, kind.across, kind.seeped]
+    values = np.column_stack([rng.uniform(low, high, kind.count) for low, high in ((0, 2), (0, 70), (0.5, 3))])
+    values[rng.random(kind.count) < 0.5] = DRY, 0.0, 1.0
+    return owner, wp.array(values.astype(np.float32), dtype=wp.vec3)
 
 
 def parch(kind: SortedParticles) -> None:

@@ -27,7 +27,7 @@ from wsim.geometry.rotations import rotate
 from wsim.judge.books.filling import filled
 from wsim.judge.books.fluids import particle_mass
 from wsim.judge.books.gaps import WALL, Solid, forces_in_gaps
-from wsim.judge.books.sph import Method, Particles, Taken, joined, pairs_within, taken
+from wsim.judge.books.sph import Method, Particles, Taken, joined, own_gradient, pairs_within, taken
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -49,6 +49,7 @@ class Carried:
     place: Floats  # (n, 3) [m]
     volume: Floats  # (n,) [m^3]
     velocity: Floats  # (n, 3) [m/s]
+    gradient: Floats  # (n, 3) sum of V grad W of each over the others of the same body [1/m]
 
 
 class FluidPush:
@@ -66,6 +67,11 @@ class FluidPush:
         self.filled = _filled(evidence)
         solids = evidence.recording.solids
         self._walls = _in_double(solids.walls) if solids else None
+        none = np.zeros((0, 3))
+        self._gradients = [
+            none if each is None or not solids else own_gradient(method, each.position, each.volume)
+            for each in self.filled
+        ]
 
     def at(self, k: int, frame: int, bodies: Sequence[int]) -> Floats:
         """Force on each of some bodies [N], (len(bodies), 3), at the fluids' frame k, the recording's `frame`."""
@@ -105,20 +111,21 @@ class FluidPush:
             low, high = body.place.min(axis=0) - reach, body.place.max(axis=0) + reach
             near |= ((walls.position >= low) & (walls.position <= high)).all(axis=1)
         place = walls.position[near]
-        standing = Carried(place, walls.volume[near], np.zeros_like(place))
+        standing = Carried(place, walls.volume[near], np.zeros_like(place), np.zeros_like(place))
         of_walls = self._in_fluid(standing, fluid)[1] if len(place) else joined([])
         solids, takes = [*carried.values(), standing], [*(found[i] for i in carried), of_walls]
         owner = np.repeat([*carried, WALL], [len(each.volume) for each in solids])
-        return Solid(
-            np.concatenate([each.place for each in solids]), np.concatenate([each.volume for each in solids]), owner,
-            joined(takes),
-        )  # fmt: skip
+        place, volume, gradient = (
+            np.concatenate([getattr(each, name) for each in solids]) for name in ("place", "volume", "gradient")
+        )
+        return Solid(place, volume, owner, gradient, joined(takes))
 
     def _carried(self, i: int, frame: int, samples: Samples) -> Carried:
         q = self._evidence.body_q[frame, i].astype(np.float64)
         qd = self._evidence.recording.body_qd[frame, i].astype(np.float64)
         arm = rotate(q[3:], samples.position - np.array(self._evidence.world.bodies[i].com))
-        return Carried(q[:3] + rotate(q[3:], samples.position), samples.volume, qd[:3] + np.cross(qd[3:], arm))
+        place, velocity = q[:3] + rotate(q[3:], samples.position), qd[:3] + np.cross(qd[3:], arm)
+        return Carried(place, samples.volume, velocity, rotate(q[3:], self._gradients[i]))
 
     def _force(
         self, fluid: Particles, place: Floats, velocity: Floats, volume: Floats, solid: Taken, pairs: Any

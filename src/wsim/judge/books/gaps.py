@@ -2,12 +2,13 @@
 
 Particles s of walls and of other bodies push a particle b of a body across a gap (docs/sph.md):
 
-    F = -sum_b V_b sum_s V_s (p_b + p_s) grad W
+    F = -sum_b V_b sum_s k_bs V_s (p_b + p_s) grad W
 
-where none of the two has its fluid behind it, seen across the gap. Particles take their pressure from the fluid near
-them; those of a body that no fluid is near take it from others of that body at a gap that have it, as water seeps in
-from the rim. Here that is the state that the run's steps tend to. All pressures are taken from the fluid's particles
-that a recording has; those of solids stand where it says: on walls, and in bodies, which carry them.
+where none of the two has its fluid behind it, seen across the gap. An open gap that no particle fits into has water
+that is missing in the sum: k makes up for it, so that sum V grad W over all around b is nothing. Particles take their
+pressure from the fluid near them; those of a body that no fluid is near take it from others of that body at a gap that
+have it, as water seeps in from the rim. Here that is the state that the run's steps tend to. All pressures are taken
+from the fluid's particles that a recording has; those of solids stand where it says: on walls, and in bodies.
 """
 
 from __future__ import annotations
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 
 BEYOND = 0.5  # of the way across a gap: fluid that lies farther off behind a particle is not in there
 WALL = -1  # in place of a body's number
+FAR_ACROSS = 0.02  # of the own sum of V grad W: that over others across a gap that water gets into is as small
+FILLED = 0.25  # of the own sum: held against it by fluid in a gap that its particles fit into
 MOST_HOPS = 64  # that pressure seeps on from the water that it came from
 STILL = 1e-4  # of the largest pressure: one that changes by less is what it tends to
 ROUNDS = 500
@@ -41,6 +44,7 @@ class Solid:
     place: Floats  # (n, 3) [m]
     volume: Floats  # (n,) [m^3]
     owner: Rows  # (n,) the body's number, or WALL
+    gradient: Floats  # (n, 3) of a body's: sum of V grad W over the others of it [1/m]
     taken: Taken
 
 
@@ -66,9 +70,24 @@ def forces_in_gaps(method: Method, solid: Solid, count: int) -> Floats:
     mirrored = of_wall & ~has[pairs.s]
     its = np.where(mirrored, np.maximum(still, -method.background), pressure[pairs.s])
     push = pairs.between & has[pairs.b] & (has[pairs.s] | of_wall)
-    size = solid.volume[pairs.b] * solid.volume[pairs.s] * method.slope(pairs.distance)
+    widening = _widening(method, solid, pairs)
+    longer = np.where(of_wall, widening[pairs.b], 0.5 * (widening[pairs.b] + widening[pairs.s]))
+    size = longer * solid.volume[pairs.b] * solid.volume[pairs.s] * method.slope(pairs.distance)
     force = np.where(push, -size * (pressure[pairs.b] + its + 2.0 * method.background), 0.0)[:, None] * pairs.way
     return np.stack([np.bincount(solid.owner[pairs.b], column, count) for column in force.T], axis=1)
+
+
+def _widening(method: Method, solid: Solid, pairs: Across) -> Floats:
+    """What the sum over others across a gap is to be times, so that V grad W over all around is nothing, (n,)."""
+    slopes = np.where(pairs.between, method.slope(pairs.distance) * solid.volume[pairs.s], 0.0)
+    others = np.stack([np.bincount(pairs.b, slopes * c, len(solid.volume)) for c in pairs.way.T], axis=1)
+    own, fluid = solid.gradient, solid.taken.gradient
+    own2, others2 = (np.einsum("ij,ij->i", each, each) for each in (own, others))
+    missing = -np.einsum("ij,ij->i", own + fluid, others)
+    needed = missing / np.maximum(others2 + FAR_ACROSS**2 * own2, 1e-300)
+    held = -np.einsum("ij,ij->i", fluid, own) / np.maximum(own2, 1e-300)
+    share = np.clip(1.0 - held / FILLED, 0.0, 1.0)
+    return np.where(others2 > 0.0, np.maximum(1.0 + share * (needed - 1.0), 0.0), 1.0)
 
 
 def _across(method: Method, solid: Solid) -> Across:

@@ -93,6 +93,7 @@ class Taken:
     pressure: Floats  # (n,) [Pa]
     velocity: Floats  # (n, 3) [m/s]
     facing: Floats  # (n, 3) the way to it, of length 1
+    gradient: Floats  # (n, 3) sum of V grad W over it [1/m]
 
 
 def pairs_within(tree: Any, place: Floats, reach: float) -> Iterator[tuple[slice, Any]]:
@@ -116,11 +117,24 @@ def taken(method: Method, fluid: Particles, place: Floats, pairs: Any) -> Taken:
     pressure = (summed(fluid.pressure[f] + method.density * (way @ method.gravity)) / some)[:, 0]
     facing = -summed(way)
     facing /= np.maximum(np.linalg.norm(facing, axis=1), 1e-300)[:, None]
-    return Taken(total[:, 0] > 0.0, np.maximum(pressure, -method.background), summed(fluid.velocity[f]) / some, facing)
+    slopes = method.slope(pairs["v"]) * fluid.volume[f]
+    gradient = np.stack([np.bincount(b, slopes * column, n) for column in way.T], axis=1).astype(np.float64)
+    return Taken(
+        total[:, 0] > 0.0, np.maximum(pressure, -method.background), summed(fluid.velocity[f]) / some, facing, gradient
+    )
+
+
+def own_gradient(method: Method, place: Floats, volume: Floats) -> Floats:
+    """Sum of V grad W of each particle of a body over the others of it, (n, 3) [1/m]."""
+    tree, total = cKDTree(place), np.zeros((len(place), 3))
+    for part, pairs in pairs_within(tree, place, method.reach):
+        way, slopes = place[part][pairs["i"]] - place[pairs["j"]], method.slope(pairs["v"]) * volume[pairs["j"]]
+        total[part] = np.stack([np.bincount(pairs["i"], slopes * c, len(place[part])) for c in way.T], axis=1)
+    return total
 
 
 def joined(parts: Sequence[Taken]) -> Taken:
     """Of particles part by part."""
-    none = Taken(np.zeros(0, dtype=bool), np.zeros(0), np.zeros((0, 3)), np.zeros((0, 3)))
-    names = ("wet", "pressure", "velocity", "facing")
+    none = Taken(np.zeros(0, dtype=bool), np.zeros(0), *(np.zeros((0, 3)) for _ in range(3)))
+    names = ("wet", "pressure", "velocity", "facing", "gradient")
     return Taken(*(np.concatenate([getattr(part, name) for part in (none, *parts)]) for name in names))

@@ -104,6 +104,7 @@ def make_extrapolate(sums: PairSums) -> wp.Kernel:
         solid: Species,
         # Data in and out:
         motion: wp.array(dtype=wp.vec4),
+        # Data out:
         facing: wp.array(dtype=wp.vec4),
     ):
         """Pressure and velocity of each solid particle from the fluid near it (Adami et al. 2012, eqs. 23, 27).
@@ -132,7 +133,7 @@ def make_extrapolate(sums: PairSums) -> wp.Kernel:
         m = motion[s]
         if total[0] <= 0.0:
             motion[s] = wp.vec4(m[0], m[1], m[2], DRY)
-            facing[s] = wp.vec4(0.0, 0.0, 0.0, facing[s][3])
+            facing[s] = wp.vec4(0.0, 0.0, 0.0, 0.0)
         else:
             pressure = wp.max(total[1] / total[0], -method.background_pressure)
             own = wp.vec3(m[0], m[1], m[2])
@@ -142,7 +143,7 @@ def make_extrapolate(sums: PairSums) -> wp.Kernel:
             share = artificial / wp.max(artificial + laminar, TINY)
             v = own + share * slip - (1.0 - share) * past
             motion[s] = wp.vec4(v[0], v[1], v[2], pressure)
-            facing[s] = wp.vec4(normal[0], normal[1], normal[2], facing[s][3])
+            facing[s] = wp.vec4(normal[0], normal[1], normal[2], 0.0)
 
     return extrapolate
 

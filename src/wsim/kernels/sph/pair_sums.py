@@ -15,7 +15,7 @@ from typing import Any
 
 import warp as wp
 
-from wsim.kernels.sph.gap_sums import ACROSS, BEYOND, GAP, SEEPING, WAY, between
+from wsim.kernels.sph.gap_sums import ACROSS, BEYOND, GAP, GRADIENT, SEEPING, WAY, between
 from wsim.kernels.sph.grid import Grid
 from wsim.kernels.sph.rows import walk
 from wsim.kernels.sph.species import BODIES, DRY, FLUID, WALLS, Species
@@ -27,6 +27,10 @@ Flux = wp.vec3
 
 # Force per volume (3), sum of V W, and the way out of the wall (3), up to a factor.
 AtWalls = wp.types.vector(length=7, dtype=wp.float32)
+
+# Force per volume (3) of others across a gap, how many there are, wet or dry, their sum of V grad W (3), and that over
+# the same body (3).
+Gap = wp.types.vector(length=10, dtype=wp.float32)
 
 # Sums of W, of W times pressure, of W times velocity (3), and of W times the way to the fluid (3).
 Extrapolated = wp.types.vector(length=8, dtype=wp.float32)
@@ -229,8 +233,9 @@ class PairSums:
         force: Force on a particle per volume, over fluid or bodies.
         force_at_walls: `AtWalls`, over walls.
         way: Sum of W times the way to them, over walls or other bodies.
-        force_in_gap: Force on a body's particle per volume, over walls or other bodies, and how many of them are across
-            a gap, wet or dry. Takes its pressure and the least that there is as v, the weight of the fluid as `common`.
+        force_in_gap: `Gap`, over walls or bodies. Takes the particle's pressure and the least that there is as v, the
+            weight of the fluid as `common`.
+        gradient: Sum of V grad W, over fluid.
         seeping: Sums of W and of W times pressure, and the fewest hops, over what its own body's particles hand on.
         find: Write the neighbours of one kind behind `start` others, but `itself`; returns how many there are then.
             For lists alone.
@@ -246,6 +251,7 @@ class PairSums:
     force_at_walls: wp.Function
     way: dict[int, wp.Function]
     force_in_gap: dict[int, wp.Function]
+    gradient: wp.Function
     seeping: wp.Function
     find: wp.Function
     options: dict[str, Any]
@@ -321,7 +327,8 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool,
         force={kind: total(_MOMENTUM, wp.vec3, kind) for kind in (FLUID, BODIES)},
         force_at_walls=total(_MOMENTUM_AT_WALLS, AtWalls, WALLS),
         way={kind: total(between(WAY, words), wp.vec3, kind) for kind, words in ACROSS.items()},
-        force_in_gap={kind: total(between(GAP, words), wp.vec4, kind) for kind, words in ACROSS.items()},
+        force_in_gap={kind: total(between(GAP, words), Gap, kind) for kind, words in ACROSS.items()},
+        gradient=total(GRADIENT, wp.vec3),
         seeping=total(SEEPING, wp.vec3, BODIES),
         find=find,
         options=options,
