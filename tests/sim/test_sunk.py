@@ -45,7 +45,7 @@ def test_a_ball_of_lead_presses_on_the_floor_by_its_weight_less_its_lift(tmp_pat
     [("sphere", 950.0, 0.0), ("box", 900.0, 0.0), ("box", 900.0, 2.5), ("slab", 600.0, 0.0)],
 )
 def test_what_is_lighter_than_water_rises_from_the_floor(tmp_path, shape, density, over):
-    """By three quarters of a spacing, where water gets in, in 0.6 s: with faces that lie flush, ten particles wide, too."""
+    """By three quarters of a spacing, where water gets in, in 0.6 s; with flush faces ten particles wide, too."""
 
     def place(scene):
         height = 2 * HALF if shape != "slab" else 3 * SPACING
