@@ -25,7 +25,9 @@ def in_box(points: np.ndarray) -> np.ndarray:
     return EDGE - np.abs(points).max(axis=1)
 
 
-def tank(builder: newton.ModelBuilder, out: np.ndarray, count: int) -> tuple[newton.Model, SolverSPH]:
+def tank(
+    builder: newton.ModelBuilder, out: np.ndarray, count: int, device: str = "cpu"
+) -> tuple[newton.Model, SolverSPH]:
     """Still water, of which `count` particles, where `out` is greatest, make room for bodies."""
     place = lattice()
     place = place[np.argsort(-out, kind="stable")[count:]]
@@ -33,7 +35,7 @@ def tank(builder: newton.ModelBuilder, out: np.ndarray, count: int) -> tuple[new
         pos=place.tolist(), vel=[(0.0, 0.0, 0.0)] * len(place), mass=[RHO * DP**3] * len(place),
         custom_attributes={"sph:pressure": (RHO * G * (LEVEL - place[:, 2])).tolist()},
     )  # fmt: skip
-    model = builder.finalize(device="cpu")
+    model = builder.finalize(device=device)
     config = SolverSPH.Config(spacing=DP, speed_of_sound=10.0 * math.sqrt(G * LEVEL))
     return model, SolverSPH(model, config, (OpenBox((0.0, 0.0, LEVEL), (*SIZE, 2.0 * LEVEL)),))
 
@@ -64,6 +66,18 @@ def lifts(model: newton.Model, solver: SolverSPH, seconds: float) -> np.ndarray:
     return np.append(np.mean(forces[steps // 2 :], axis=0), walls)
 
 
+def held(shape: str, height: float, device: str = "cpu") -> tuple[newton.Model, SolverSPH]:
+    """A ball or a box whose middle is so high over the floor [m]."""
+    builder = world()
+    body = builder.add_body(xform=wp.transform(wp.vec3(0.0, 0.0, height), wp.quat_identity()))
+    if shape == "ball":
+        builder.add_shape_sphere(body, radius=EDGE)
+    else:
+        builder.add_shape_box(body, hx=EDGE, hy=EDGE, hz=EDGE)
+    volume, depth = (BALL, in_ball) if shape == "ball" else (BOX, in_box)
+    return tank(builder, depth(lattice() - np.array([0.0, 0.0, height])), round(volume / DP**3), device)
+
+
 @pytest.mark.parametrize(
     ("shape", "over", "share"),
     [("ball", 0.0, 0.05), ("box", 0.0, 0.05), ("box", 0.25 * DP, 0.05), ("box", DP, 0.05)],
@@ -71,19 +85,36 @@ def lifts(model: newton.Model, solver: SolverSPH, seconds: float) -> np.ndarray:
 )
 def test_what_is_on_the_floor_has_its_lift(shape, over, share):
     """Measured: 8.7 N of 8.88, and 16.6, 16.4 and 16.9 of 16.95; from fluid alone 0.9 and -22.5 N, the last 14.9."""
-    builder, height = world(), EDGE + over
-    body = builder.add_body(xform=wp.transform(wp.vec3(0.0, 0.0, height), wp.quat_identity()))
-    if shape == "ball":
-        builder.add_shape_sphere(body, radius=EDGE)
-    else:
-        builder.add_shape_box(body, hx=EDGE, hy=EDGE, hz=EDGE)
-    volume, depth = (BALL, in_ball) if shape == "ball" else (BOX, in_box)
-    count = round(volume / DP**3)
-    model, solver = tank(builder, depth(lattice() - np.array([0.0, 0.0, height])), count)
+    model, solver = held(shape, EDGE + over)
     lift, on_walls = lifts(model, solver, 0.8)
-    assert lift == pytest.approx(RHO * G * volume, rel=share)
+    assert lift == pytest.approx(RHO * G * (BALL if shape == "ball" else BOX), rel=share)
     # What presses the body up in the gap presses the floor down: together they bear the water.
     assert lift + on_walls == pytest.approx(-G * float(model.particle_mass.numpy().sum()), rel=0.02)  # it sloshes
+
+
+@pytest.mark.cuda
+@pytest.mark.parametrize("shape", ["ball", "box"])
+def test_on_cuda_what_is_on_the_floor_has_its_lift(shape):
+    lift = lifts(*held(shape, EDGE, "cuda:0"), 0.8)[0]
+    assert lift == pytest.approx(RHO * G * (BALL if shape == "ball" else BOX), rel=0.1)
+
+
+def test_where_the_water_has_left_the_gap_falls_dry():
+    """Flush on the floor, and all the water lifted off at once: the middle of the face is told by its rim, and that by
+    the fluid, until nobody is told any more."""
+    model, solver = held("box", EDGE)
+    state, dt = model.state(), solver.config.max_time_step
+    newton.eval_fk(model, model.joint_q, model.joint_qd, state)
+    rising = []
+    for step in range(120):
+        if step == 40:
+            state.particle_q.assign(state.particle_q.numpy() + np.array([0.0, 0.0, 1.5 * LEVEL], dtype=np.float32))
+        state.clear_forces()
+        solver.step(state, state, None, None, dt)
+        rising.append(float(solver.body_wrench.numpy()[0, 2]))
+    assert rising[39] == pytest.approx(RHO * G * BOX, rel=0.1)
+    assert rising[41] > 0.5 * RHO * G * (2.0 * EDGE) ** 2 * LEVEL * (2.0 / 6.0) ** 2  # from the middle alone
+    assert rising[-1] == 0.0
 
 
 def test_water_does_not_lift_what_lies_on_the_bottom_of_a_hull():
