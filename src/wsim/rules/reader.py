@@ -24,6 +24,8 @@ class Reader:
         self.last: list[Thing] = []  # what "it" and "they" mean
         self.spoken: list[Thing] = []  # among which "the first" or "the other" chooses
         self.chosen: list[Thing] = []  # by the choices so far
+        self.earlier: list[tuple[list[Thing], list[Thing]]] = []  # those two, before what "with" has named
+        self.partly: list[tuple[list[Thing], list[Thing]]] = []  # some of several, and the others
         self.named: dict[int, Thing] = {}  # what a phrase was found to name, by identity
         self.singles: dict[int, list[Thing]] = {}  # what a thing that was several has become, by identity
         self.kept: list[Phrase] = []  # made on the way: their identity must stay theirs
@@ -211,6 +213,9 @@ class Reader:
     def _choose(self, phrase: Phrase, kind: Phrase | None = None) -> list[Thing]:
         """Which of the things that were spoken of a choice means: "the first", "the other", "all", "the steel one"."""
         among = self._among(phrase, kind)
+        if phrase.choice == "other" and phrase.owner is None and self.earlier and not set(among) - {*self.chosen}:
+            self.spoken, self.chosen = self.earlier.pop()
+            among = self._among(phrase, kind)
         rest = [thing for thing in among if thing not in self.chosen]
         count = phrase.count or 1
         if phrase.choice == "all":
@@ -227,6 +232,8 @@ class Reader:
         if not found or (phrase.choice in ("nth", "some") and len(found) < count and not found[0].group):
             raise NotUnderstood([phrase.words], "cannot tell which of what was spoken of this is")
         self.chosen += found
+        if phrase.choice == "some":
+            self.partly.append((found, [thing for thing in among if thing not in found]))
         return found
 
     def _among(self, phrase: Phrase, kind: Phrase | None) -> list[Thing]:
