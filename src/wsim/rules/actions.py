@@ -20,7 +20,25 @@ _INTO = ("into", "to", "against", "towards", "at")
 
 def act(reader: Reader, thing: Thing, action: Action) -> None:
     """Let a thing do what a clause says."""
+    ends = {place.side.predicate if place.side is not None else "between": place for place in action.places
+            if place.preposition in ("side", "between")}  # fmt: skip
+    told = action.verb in _ENDS or (action.verb == "rest" and not action.words.startswith(_IS))
+    for predicate, place in ends.items():
+        goes = (_MOVING if told else set[str]()) & {*thing.does} or thing.off
+        if goes and predicate not in ("SPAWNED-ABOVE", "FACING-TO", "FACING-OPPOSITE-TO") or _under(action, predicate):
+            raise NotUnderstood([f"{action.words}"], "says where things start, not where they come to:")
+    reader.cast.said.append((thing, action))
     (_be if action.verb == "be" else _RULES[action.verb])(reader, thing, action)
+
+
+_IS = ("is ", "are ", "was ", "were ")
+_ENDS = ("land", "stop", "bounce", "roll", "slide", "move", "go", "fall", "drop", "push", "hit", "fly", "throw")
+_MOVING = {"roll", "slide", "push", "throw", "swing", "meet", "ride"}
+
+
+def _under(action: Action, predicate: str) -> bool:
+    """Whether something goes under another: it would start there."""
+    return predicate == "under" and action.verb in ("roll", "slide", "move", "go", "push", "fly", "throw", "drive")
 
 
 def meet(reader: Reader, things: list[Thing], action: Action) -> None:
@@ -33,6 +51,7 @@ def meet(reader: Reader, things: list[Thing], action: Action) -> None:
         if not other and not ground and not all(common(reader, thing, place) for thing in things):
             raise NotUnderstood([place.words], NOT_IN_THIS_ORDER)
     for thing in things:
+        reader.cast.said.append((thing, action))
         put(thing, "ground")
         do(thing, "meet")
         if action.verb in ("roll", "slide"):

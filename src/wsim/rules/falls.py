@@ -6,7 +6,7 @@ from wsim.errors import UserError
 from wsim.rules.cast import CARRIERS, Thing
 from wsim.rules.goes import aim, go, movable, strike
 from wsim.rules.phrases import Action, Place
-from wsim.rules.places import common, do, put, put_inside, stand, support, where
+from wsim.rules.places import common, do, put, put_inside, refuse_afloat, stand, support, where
 from wsim.rules.reader import Reader
 from wsim.rules.tokens import NOT_IN_THIS_ORDER, NotUnderstood
 
@@ -38,7 +38,9 @@ def fall(reader: Reader, thing: Thing, action: Action) -> None:
     if thing.noun.family == "pendulum" or thing.rod is not None:
         _let_go(reader, thing, action)
         return
-    aimed = [place for place in action.places if place.preposition not in ("time", "toward", "in_turn")]
+    if any(place.preposition == "time" for place in action.places):
+        raise NotUnderstood([action.words], "lets things fall from a height, not for a time:")
+    aimed = [place for place in action.places if place.preposition not in ("toward", "in_turn")]
     over = action.particle == "over" or (thing.group and not aimed and action.particle != "in")
     if action.verb == "fall" and (over or (action.particle == "down" and thing.group)):
         topple(reader, thing, action)
@@ -162,11 +164,14 @@ def _land(reader: Reader, thing: Thing, action: Action, place: Place) -> None:
     if below is not None and place.preposition in ("on", "in"):
         stand(reader, below, [place])
         return
+    refuse_afloat(reader, thing, place)
     at = where(reader, place.phrase, thing)
     if not isinstance(at, Thing):
         put(thing, at)
     elif at.noun.family == "vessel":
         put_inside(reader, thing, at)
+    elif place.preposition in ("into", "inside") and at.noun.family == "solid" and not at.group:
+        raise NotUnderstood([place.words], "builds it as a solid body with no room in it, so nothing falls in:")
     elif at.noun.family in CARRIERS:
         raise NotUnderstood([action.words], "sets things on a belt or a turntable, and drops nothing onto it:")
     else:

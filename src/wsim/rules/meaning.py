@@ -28,6 +28,8 @@ def understand(clauses: list[Clause]) -> Cast:
     for clause in [each for one in clauses for each in _of_the_last(one)]:
         _clause(reader, clause)
     _settle(reader)
+    for found in (reader.cast.said, reader.cast.named):
+        found[:] = [(now, said) for thing, said in found for now in reader.now(thing)]  # type: ignore[misc]
     return reader.cast
 
 
@@ -44,6 +46,7 @@ def _of_the_last(clause: Clause) -> list[Clause]:
 def _clause(reader: Reader, clause: Clause) -> None:
     """Take in one clause."""
     _say_held(clause)
+    before = {id(thing): [*thing.does] for thing in reader.cast.things}
     subjects: list[Thing] = []
     scenery = []
     pending: list[Thing] = []
@@ -97,8 +100,27 @@ def _clause(reader: Reader, clause: Clause) -> None:
             for each in (place.phrase, place.other):
                 if each is not None:
                     _say(reader, each, subjects)
+    if clause.then:
+        _later(reader, clause, subjects, before)
     if subjects:
         reader.last = [thing for thing in subjects if thing in reader.cast.things] or reader.last
+
+
+def _later(reader: Reader, clause: Clause, things: list[Thing], before: dict[int, list[str]]) -> None:
+    """ "Then": what goes on, or is hit, does so in its time; what else falls then is let go later.
+
+    Raises:
+        NotUnderstood: It would start with all the rest.
+    """
+    for thing in things:
+        did = before.get(id(thing), [])
+        new = [what for what in thing.does if what not in did]
+        met = any(thing in (one.target, one.support, one.meets) for one in reader.cast.things)
+        if "drop" in new and not _GOING & {*did} and thing.delay is None:
+            thing.delay = THEN
+            reader.cast.assume(thing.words, f"let go after {THEN:g} s", "the prompt says then, not when")
+        elif _GOING & {*new} and not _GOING & {*did} and not met and thing.delay is None:
+            raise NotUnderstood([f"then {clause.words}"], "starts what moves at once; say 'after two seconds', not")
 
 
 def _only(reader: Reader, clause: Clause, things: list[Thing]) -> None:
@@ -387,6 +409,8 @@ def _check_water(cast: Cast) -> None:
 
 
 _INSTEAD = {"float": "sink", "sink": "float"}
+_GOING = {"drop", "roll", "slide", "push", "throw", "swing", "topple", "meet", "run"}  # what sets or keeps one going
+THEN = 1.0  # after which is let go what falls then [s]
 _SINGLE = ("ramp", "seesaw", "belt", "turntable")  # families that are built one by one
 
 

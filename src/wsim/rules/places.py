@@ -42,6 +42,7 @@ def stand(reader: Reader, thing: Thing, places: list[Place]) -> None:
         if number and below is not None and (below.place is None or below.place == "ground"):
             stand(reader, below, [place])
             continue
+        refuse_afloat(reader, thing, place)
         _stand_at(reader, thing, place, at)
 
 
@@ -256,6 +257,17 @@ def where(reader: Reader, phrase: Phrase, thing: Thing | None = None) -> str | T
             return "water"
         return reader.it(phrase, thing)
     return reader.thing(phrase)
+
+
+def refuse_afloat(reader: Reader, thing: Thing, place: Place) -> None:
+    """Refuse "a plank floats and a cube lies on it", which the water is not.
+
+    Raises:
+        NotUnderstood: It is on what is in the water.
+    """
+    swims = any(one is not thing and one.place == "water" for one in reader.last)
+    if place.preposition in ("on", "onto") and place.phrase is not None and place.phrase.part in ("it", "them") and swims:
+        raise NotUnderstood([place.words], "stacks things on the ground, not on what is in the water:")
 
 
 def part(phrase: Phrase) -> str | None:

@@ -98,6 +98,11 @@ class Reader:
 
     def subjects(self, phrase: Phrase, actions: list[Action]) -> list[Thing]:
         """The things that a clause is about."""
+        found = self._subjects(phrase, actions)
+        self.cast.named += [(thing, phrase) for thing in found]
+        return found
+
+    def _subjects(self, phrase: Phrase, actions: list[Action]) -> list[Thing]:
         if phrase.kind == "pronoun":
             return self.pronoun(phrase, actions)
         if phrase.kind == "choice":
@@ -213,7 +218,7 @@ class Reader:
     def _choose(self, phrase: Phrase, kind: Phrase | None = None) -> list[Thing]:
         """Which of the things that were spoken of a choice means: "the first", "the other", "all", "the steel one"."""
         among = self._among(phrase, kind)
-        if phrase.choice == "other" and phrase.owner is None and self.earlier and not set(among) - {*self.chosen}:
+        if phrase.choice == "other" and phrase.owner is None and self.earlier and not self.chosen:
             self.spoken, self.chosen = self.earlier.pop()
             among = self._among(phrase, kind)
         rest = [thing for thing in among if thing not in self.chosen]

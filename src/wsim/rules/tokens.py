@@ -49,7 +49,7 @@ class Tokens:
     """The prompt's words, and the tokens that they make."""
 
     def __init__(self, prompt: str, known: Lexicon) -> None:
-        self.text = " ".join(re.sub(r"(?<=\w)-(?=\w)", " ", _in_full(prompt.lower())).split())
+        self.text = as_read(prompt)
         self.known = known
         self.spans = [match.span() for match in _WORD.finditer(self.text)]
         self.words = [self.text[a:b] for a, b in self.spans]
@@ -175,6 +175,11 @@ _SHORT = (
     (r"\blet's\b", "let"),
     (r"\b(is|are|was|were|does|do|did)n't\b", r"\1 not"),
 )
+
+
+def as_read(prompt: str) -> str:
+    """The prompt in lower case, with one space between words and nothing shortened."""
+    return " ".join(re.sub(r"(?<=\w)-(?=\w)", " ", _in_full(prompt.lower())).split())
 
 
 def _in_full(text: str) -> str:
