@@ -13,8 +13,9 @@ from wsim.rules.tokens import as_read
 
 Names = dict[int, list[str]]
 OF_OTHERS = "no objective of the plan asks for it of what it is said of"
+_OF_WATER = ("fill", "hold", "contain")  # what a tank is said to be amid what others do
+# Behind what is done, and before whom it is done to.
 _AT = ("into", "against", "with", "at", "to", "towards", "onto", "on", "by", "in", "over", "before")
-# behind what is done and before whom it is done to
 
 
 def tied_to(plan: Plan, cast: Cast, names: Names) -> Plan:
@@ -34,7 +35,7 @@ def tied_to(plan: Plan, cast: Cast, names: Names) -> Plan:
 
 def _own(clause: Clause, demand: Demand, plan: Plan, cast: Cast, names: Names) -> Clause:
     at = _place(plan.prompt, demand)
-    if clause.by is None or at is None:
+    if clause.by is None or at is None or demand.base in _OF_WATER:
         return clause
     if demand.kind == "number":
         counted = [] if demand.unit or demand.often else _counted(at, cast, names)
@@ -46,7 +47,7 @@ def _own(clause: Clause, demand: Demand, plan: Plan, cast: Cast, names: Names) -
     kept: list[int | str] = [each for each in clause.by if _is_of(each, who, known, plan)]
     if kept:
         return Clause(words=clause.words, by=kept)
-    if demand.kind == "state" and not clause.objectives:
+    if demand.kind == "state":
         return Clause(words=clause.words, by=sorted(who))
     return Clause(words=clause.words, unchecked=OF_OTHERS)
 

@@ -237,7 +237,8 @@ def _way(
             return asks
     if thing.direction is None and (how == "roll" or thing.off):
         return asks
-    sentence = f"{name} moves {way:g} m or more to the {direction}."
+    where = "" if thing.direction is None else f" to the {direction}"
+    sentence = f"{name} moves {way:g} m or more{where}."
     return [*asks, Objective(kind="moves", object=name, value=way, direction=direction, sentence=sentence)]
 
 
