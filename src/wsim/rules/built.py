@@ -20,6 +20,7 @@ from wsim.rules.tokens import NotUnderstood
 
 Names = dict[int, list[str]]
 CLOSE = 0.005  # that a distance may be off by [m]
+MIDDLE = 0.5  # of what is no table, over which that is which it carries
 LOOKS, STEP = 3.0, 0.02  # for how long, and in which steps, it is looked whether things run into each other [s]
 RUBS = 0.4  # friction of what slides, if it has none of its own
 _GOES = {"roll", "slide", "push", "throw"}
@@ -59,14 +60,16 @@ def _carried(thing: Thing, own: list[PlanObject], plan: Plan, names: Names) -> l
     found = []
     for carrier in carriers:
         boxes = [around(plan.object(name)) for name in names.get(id(carrier), [])]
-        if not all(any(_is_over(around(item), box) for box in boxes) for item in own):
+        share = MIDDLE if carrier.noun.family == "solid" else 1.0
+        if not all(any(_is_over(around(item), box, share) for box in boxes) for item in own):
             found.append(f"on {carrier.words}")
     return found
 
 
-def _is_over(box: Box, below: Box) -> bool:
-    middle = [(low + high) / 2 for low, high in zip(box.low, box.high, strict=True)]
-    inside = all(below.low[k] - CLOSE <= middle[k] <= below.high[k] + CLOSE for k in (0, 1))
+def _is_over(box: Box, below: Box, share: float) -> bool:
+    """Whether its middle is over a share of what is below, round that's middle."""
+    apart = [abs(box.low[k] + box.high[k] - below.low[k] - below.high[k]) / 2 for k in (0, 1)]
+    inside = all(apart[k] <= share * (below.high[k] - below.low[k]) / 2 + CLOSE for k in (0, 1))
     return inside and box.low[2] >= below.low[2] - CLOSE
 
 

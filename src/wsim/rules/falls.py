@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from wsim.defaults import GRAVITY
 from wsim.errors import UserError
 from wsim.rules.cast import CARRIERS, Thing
 from wsim.rules.goes import aim, go, movable, strike
@@ -38,9 +41,12 @@ def fall(reader: Reader, thing: Thing, action: Action) -> None:
     if thing.noun.family == "pendulum" or thing.rod is not None:
         _let_go(reader, thing, action)
         return
-    if any(place.preposition == "time" for place in action.places):
-        raise NotUnderstood([action.words], "lets things fall from a height, not for a time:")
-    aimed = [place for place in action.places if place.preposition not in ("toward", "in_turn")]
+    high = thing.drop_height is not None or any(place.length is not None for place in action.places)
+    times = [place.value or 0.0 for place in action.places if place.preposition == "time"]
+    if times and not high and action.verb == "fall":  # "falls for a second": from so high; else it is the run's time
+        thing.drop_height = round(GRAVITY * times[0] ** 2 / 2, 4)
+        action = replace(action, places=[place for place in action.places if place.preposition != "time"])
+    aimed = [place for place in action.places if place.preposition not in ("time", "toward", "in_turn")]
     over = action.particle == "over" or (thing.group and not aimed and action.particle != "in")
     if action.verb == "fall" and (over or (action.particle == "down" and thing.group)):
         topple(reader, thing, action)

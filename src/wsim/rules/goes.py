@@ -70,8 +70,9 @@ def go(reader: Reader, thing: Thing, action: Action, how: str) -> None:
     do(thing, how)
     for place in aims:
         _towards(reader, thing, action, place)
-    if thing.lasts is not None and (thing.support or thing.path or thing.target or thing.off):
-        raise NotUnderstood([action.words], "lets things go for a time where nothing is in their way, but not so:")
+    alone = not (thing.support or thing.path or thing.target or thing.off or thing.into)
+    if thing.lasts is not None and not (alone and (how != "push" or thing.speed is None)):
+        reader.cast.duration, thing.lasts = thing.lasts, None  # what else goes on has its own time: it is the run's
     if thing.target is None and thing.count > 1 and thing.path is None and thing.support is None and not thing.group:
         reader.cast.assume(thing.words, "side by side", "the prompt does not say how they stand")
 

@@ -39,7 +39,8 @@ def _own(clause: Clause, demand: Demand, plan: Plan, cast: Cast, names: Names) -
         return clause
     if demand.kind == "number":
         counted = [] if demand.unit or demand.often else _counted(at, cast, names)
-        return Clause(words=clause.words, by=list(counted)) if len(counted) == demand.value else clause
+        whole = bool(counted) and len(counted) == demand.value
+        return Clause(words=clause.words, by=list(counted)) if whole else clause
     who = _parties(at, plan.prompt, cast, names)
     if not who:
         return clause

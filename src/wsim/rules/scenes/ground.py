@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from wsim.defaults import WALL
 from wsim.errors import UserError
-from wsim.plan.layout.bodies import around
+from wsim.plan.layout.bodies import around, extents
 from wsim.plan.schema import Objective, PlanObject, Registration, Relation
 from wsim.plan.schema.formula_contact import CollidesWith, SupportedBy
 from wsim.plan.schema.predicates import OVERLAP
@@ -96,6 +98,7 @@ class _Ends:
         edge = max((around(item).high[1] for item in fixed), default=0.0)
         self.inside: dict[int, list[str]] = {}  # what is in a vessel
         self.goes: dict[int | None, str] = {}  # what goes to the left, as the last of its row
+        self.juts: dict[int | None, float] = {}  # by which what the last of a row carries is wider than that [m]
         self.clear = tidy(scene.span[1] - edge) if fixed else 0.0  # by which what it carries juts out [m]
 
     def among(self, thing: Thing, name: str) -> list[str]:
@@ -104,8 +107,8 @@ class _Ends:
         found.append(name)
         return found[:-1]
 
-    def row(self, thing: Thing) -> Relation | None:
-        """The row that puts a thing beside the last one on the same support."""
+    def row(self, thing: Thing, juts: float) -> Relation | None:
+        """The row that puts a thing, over which what it carries juts out, beside the last one on the same support."""
         on = None if thing.support is None else id(thing.support)
         if on not in self.last:
             return None
@@ -113,10 +116,11 @@ class _Ends:
         if _lane(thing) < 0 or (_lane(thing) > 0 and on in self.goes):
             side = "BACK-OF"  # on a line of its own: it would run into what is there, or be run into
         self.clear = 0.0 if on is None else self.clear
-        return Relation(predicate=side, ref=self.last[on], gap=gap)
+        return Relation(predicate=side, ref=self.last[on], gap=tidy(gap + juts + self.juts.get(on, 0.0)))
 
-    def grow(self, thing: Thing, name: str) -> None:
+    def grow(self, thing: Thing, name: str, juts: float = 0.0) -> None:
         """Note a new end."""
+        self.juts[None if thing.support is None else id(thing.support)] = juts
         if _lane(thing) > 0:
             self.goes[None if thing.support is None else id(thing.support)] = name
         self.last[None if thing.support is None else id(thing.support)] = name
@@ -250,8 +254,9 @@ def _in_plane(thing: Thing, made: list[PlanObject], index: int, part: Part, ends
     sides = _sides(thing) if index == 0 else []
     if not sides:
         # On the middle of what carries it, unless something is there already.
-        row = ends.row(thing)
-        ends.grow(thing, item.name)
+        juts = _juts(thing, item, cast)
+        row = ends.row(thing, juts)
+        ends.grow(thing, item.name, juts)
         return [] if row is None else [row]
     gap = GAP if thing.support is None else GAP_ABOVE
     rows = []
@@ -262,6 +267,15 @@ def _in_plane(thing: Thing, made: list[PlanObject], index: int, part: Part, ends
         if beside.predicate == "LEFT-OF" and ends.last.get(on) == ref:
             ends.grow(thing, item.name)
     return rows
+
+
+def _juts(thing: Thing, item: PlanObject, cast: Cast) -> float:
+    """By how much what a thing carries reaches over it, on each side [m]: neighbours then have room as well."""
+    if thing.noun.family != "solid":
+        return 0.0
+    carried = [one for one in cast.things if one.support is thing and one.bridges is None]
+    made = [one for each in carried for one in bodies(each, replace(cast, assumptions=[]), set())]
+    return max([0.0, *((extents(one)[1] - extents(item)[1]) / 2 for one in made)])
 
 
 def _in_vessel(thing: Thing, item: PlanObject, vessel: str, held: int, before: list[str]) -> list[Relation]:
