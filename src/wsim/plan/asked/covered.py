@@ -8,18 +8,22 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from wsim.plan.asked.demands import REQUIRED, SHOWN, Demand, demands
+from wsim.plan.asked.doers import counted_short, outsiders
 from wsim.plan.asked.often import asks_again, asks_exactly, asks_often
+from wsim.plan.asked.order import turned_round, unordered
 from wsim.plan.asked.parties import strangers
-from wsim.plan.asked.shown import is_blow_shown, shows_not
+from wsim.plan.asked.shown import for_a_while, is_blow_shown, shows_not
 from wsim.plan.asked.stated import asks, asks_by_then, ends_by, states
 from wsim.plan.asked.tokens import tokens
 from wsim.plan.asked.vocabulary import CAUSES, SCHEDULED, SPRINGY
+from wsim.plan.asked.ways import stays_there, wrong_way
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Clause, Objective, Plan
 
 BLOW = "it is a blow, and no objective that is named for it asks for one: collides_with, touches"
 NOT_SHOWN = "it is not to happen, and no objective that is named for it says so: not (...), never_touches, upright"
+NOT_ALL = "it is never to happen, and what is named for it is of a part of the run: always (not ...)"
 OFTEN = "no objective that is named for it has as many events: a then b then a"
 EXACTLY = "nothing asks that it comes no more often: not (a then b then a)"
 AGAIN = "no objective that is named for it asks for what comes after something else: a then b, finally"
@@ -71,10 +75,17 @@ def missing(plan: Plan) -> list[Gap]:
 
 def not_checked(plan: Plan) -> list[str]:
     """A line for each demand that no run of the plan will show, and for each clause that the plan says so of."""
+    if not plan.clauses:
+        return []
     found = gaps(plan)
     told = {gap.why for gap in found if gap.said}
-    lines = [gap.line for gap in found]
+    lines = [gap.line for gap in found] + _unordered(plan)
     return lines + [f"'{c.words}': {c.unchecked}" for c in plan.clauses if c.unchecked and c.unchecked not in told]
+
+
+def _unordered(plan: Plan) -> list[str]:
+    placed = spans(plan)
+    return unordered(plan, lambda verb: _asked([clause for clause, where in placed if _within(verb, where)], plan))
 
 
 @dataclass(frozen=True)
@@ -156,22 +167,39 @@ def _gap(demand: Demand, clauses: Sequence[Clause], plan: Plan) -> Gap | None:
         alone = [clause for clause in tied if not _more_than(demand, clause)]
         return None if alone else Gap(demand, next(iter(reasons), "nothing measures it"), said=bool(reasons))
     if any(_shows(clause, demand, plan) for clause in tied):
-        why = _unlike(demand, _asked(tied, plan), plan)
+        why = _unlike(demand, tied, plan)
         return Gap(demand, next(iter(reasons), why), said=bool(reasons)) if why else None
     if reasons:
         return Gap(demand, reasons[0], said=True)
     return Gap(demand, _lacks(demand) if clauses else "no clause has it")
 
 
-def _unlike(demand: Demand, asked: Sequence[Objective], plan: Plan) -> str:
-    """Why objectives that are named for what happens show something else; empty where they show it."""
-    if demand.kind not in ("verb", "state", "beyond") or not asked:
+def _unlike(demand: Demand, tied: Sequence[Clause], plan: Plan) -> str:
+    """Why what is named for something that happens shows something else; empty where it shows it."""
+    asked = _asked(tied, plan)
+    if demand.kind not in ("verb", "state", "beyond"):
         return ""
-    if demand.denied and demand.kind != "beyond" and not any(shows_not(each, demand.base) for each in asked):
-        return NOT_SHOWN
+    if not asked:
+        return wrong_way(plan, demand, (), tied)
+    if demand.denied and demand.kind != "beyond":
+        denials = [each for each in asked if shows_not(each, demand.base)]
+        if not denials:
+            return NOT_SHOWN
+        if not demand.timed and all(for_a_while(each, plan.simulation.duration) for each in denials):
+            return NOT_ALL
     if not demand.denied and not is_blow_shown(demand.base, asked):
         return BLOW
-    return strangers(plan, demand, asked)
+    if why := strangers(plan, demand, asked):
+        return why
+    if demand.kind == "state":
+        return counted_short(plan, demand, asked)
+    return (
+        outsiders(plan, demand, asked)
+        or counted_short(plan, demand, asked)
+        or wrong_way(plan, demand, asked, tied)
+        or stays_there(plan, demand)
+        or turned_round(plan, demand, asked)
+    )
 
 
 def _asked(clauses: Sequence[Clause], plan: Plan) -> list[Objective]:
@@ -198,7 +226,7 @@ def _shows(clause: Clause, demand: Demand, plan: Plan) -> bool:
         return any(asks_by_then(each, demand) for each in asked) or (bool(asked) and ends_by(short, demand))
     if demand.kind == "number":
         return any(asks(each, demand) for each in asked) or any(
-            states(plan, name, field, demand) for name, field in clause.things
+            states(plan, name, field, demand) for name, field in clause.things if not (demand.gone and field == "place")
         )
     if demand.denied:
         return bool(asked)

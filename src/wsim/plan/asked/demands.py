@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import Literal
 
 from wsim.plan.asked import vocabulary as words
-from wsim.plan.asked.numbers import digits, joined, numbers
+from wsim.plan.asked.numbers import Limit, digits, joined, numbers
 from wsim.plan.asked.tokens import Token, Words, text_at
 
 Kind = Literal["verb", "state", "beyond", "number", "relation", "manner", "often"]
@@ -29,8 +29,11 @@ class Demand:
         value: Of a number, in `unit`.
         unit: SI, angles in degrees; empty of a bare number.
         denied: Of what happens or is so: whether it is not to.
+        timed: Of what is not to happen: whether that is said of some time: "does not fall until it is hit".
         bound: Of a time: whether something is to happen by then.
         often: Of a number: whether it says how often.
+        gone: Of a number: whether it is how far something goes: "rolls 3 m".
+        limit: Of a number: whether it is the "least" or the "most" that something may be, or a time "since" when.
     """
 
     kind: Kind
@@ -41,8 +44,11 @@ class Demand:
     value: float | None = None
     unit: str = ""
     denied: bool = False
+    timed: bool = False
     bound: bool = False
     often: bool = False
+    gone: bool = False
+    limit: Limit = ""
 
     @property
     def quoted(self) -> str:
@@ -67,7 +73,7 @@ def _found(prompt: str) -> Iterator[Demand]:
     for each in numbers(said):
         taken.update(range(each.first, each.last + 1))
         yield made("number", each.first, each.last, value=each.value, unit=each.unit, bound=each.bound,
-                   often=each.often)  # fmt: skip
+                   often=each.often, limit=each.limit, gone=_is_gone(said, each.first))  # fmt: skip
     for k, token in enumerate(said):
         if (first := _how_often(said, k)) is not None:
             yield made("often", first, k)
@@ -75,7 +81,8 @@ def _found(prompt: str) -> Iterator[Demand]:
             continue
         base = words.stem(token.text)
         if base is not None and _is_verb(said, k, base, k in read.opens):
-            yield made(_kind_of(base), k, k, base=base, denied=_is_denied(read, k))
+            denied = _is_denied(read, k)
+            yield made(_kind_of(base), k, k, base=base, denied=denied, timed=denied and _is_timed(read, k))
         elif token.text in words.MANNERS or (
             token.text.endswith("ly") and len(token.text) > 4 and token.text not in words.NO_MANNER
         ):
@@ -83,6 +90,13 @@ def _found(prompt: str) -> Iterator[Demand]:
                 yield made("manner", k, k)
         elif token.text in words.RELATIONS:
             yield made("relation", k, k)
+
+
+def _is_gone(said: Sequence[Token], k: int) -> bool:
+    """Whether a number stands right behind what something does: how far it goes, or how fast."""
+    while text_at(said, k - 1) in ("about", "for", "almost", "nearly", "another"):
+        k -= 1
+    return (words.stem(text_at(said, k - 1)) or "") in words.GOES
 
 
 def _kind_of(base: str) -> Kind:
@@ -98,7 +112,10 @@ def _is_verb(said: Sequence[Token], k: int, base: str, opens: bool) -> bool:
         return False
     counted = before in words.WORDS or before in words.SCALES or (digits(before) and not joined(said, k - 1))
     beside = before in ("to", "on", "its", "further") or text_at(said, k + 1) == "of"
-    if before == "of" or (counted and word == base) or (word == "left" and beside):
+    apart = word == "close" and text_at(said, k + 1) in ("to", "together", "by", "beside", "behind", "enough")
+    if base == "end" and text_at(said, k + 1) not in ("in", "up", "on", "inside"):
+        return False
+    if before == "of" or apart or (counted and word == base) or (word == "left" and beside):
         return False
     if word.endswith("ing") and word != base:
         # Between an article and a noun it describes; after a noun, a comma or a verb it tells what goes on.
@@ -135,6 +152,14 @@ def _is_denied(read: Words, k: int) -> bool:
             break
         i -= 1
     return _is_subject_denied(read, i)
+
+
+def _is_timed(read: Words, k: int) -> bool:
+    """Whether the sentence of a word speaks of a time."""
+    begin = max(mark for mark in read.opens if mark <= k)
+    end = min((mark for mark in read.opens if mark > k), default=len(read.said))
+    here = read.said[begin:end]
+    return any(token.text in words.OF_TIME for token in here) or any(each.unit == "s" for each in numbers(here))
 
 
 def _of_a_verb(read: Words, i: int, k: int) -> bool:

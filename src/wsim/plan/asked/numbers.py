@@ -5,11 +5,16 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 from wsim.plan.asked import vocabulary as words
 from wsim.plan.asked.tokens import Token, text_at
 
 _ORDINAL = frozenset(("st", "nd", "rd", "th"))
+Limit = Literal["", "least", "most", "since"]
+_MORE = words.as_set("more greater faster higher further farther longer larger bigger heavier deeper taller")
+_LESS = words.as_set("less fewer slower lower nearer closer shorter smaller lighter")
+_AT = {"least": "least", "most": "most", "minimum": "least", "maximum": "most"}
 _NOT_COUNTED = frozenset(["another", "of", "by", "end", "side"])
 
 
@@ -24,6 +29,7 @@ class Number:
         unit: SI, angles in degrees; empty of a bare number.
         bound: Whether something is to happen by then: "within 2 s".
         often: Whether it says how often: "three times", "twice".
+        limit: "least" of what is to be more, "most" of what is to be less, "since" of a time from which on; else empty.
     """
 
     first: int
@@ -32,6 +38,7 @@ class Number:
     unit: str
     bound: bool = False
     often: bool = False
+    limit: Limit = ""
 
 
 def numbers(said: Sequence[Token]) -> Iterator[Number]:
@@ -59,7 +66,8 @@ def numbers(said: Sequence[Token]) -> Iterator[Number]:
             found[i] = (first, last, value * scale, other)
     for first, last, value, unit in found:
         often = not unit and _is_often(said, first, last)
-        yield Number(first, last, value, unit, unit == "s" and _is_bound(said, first), often)
+        bound = unit == "s" and _is_bound(said, first)
+        yield Number(first, last, value, unit, bound, often, _limit(said, first, unit) if unit and not bound else "")
 
 
 def digits(text: str) -> bool:
@@ -78,6 +86,21 @@ def _is_bound(said: Sequence[Token], k: int) -> bool:
     if "for" in before[-3:]:
         return False
     return before[-1:] in (["within"], ["under"]) or tuple(before[-2:]) in words.BY_THEN
+
+
+def _limit(said: Sequence[Token], k: int, unit: str) -> Limit:
+    """Whether a number is a limit of what is to be: "faster than 2 m/s", "no more than 3 m", "after 2 s"."""
+    one, two, three = (text_at(said, k - i) for i in (1, 2, 3))
+    if unit == "s" and one == "after":
+        return "since"
+    if one == "than" and two in _MORE | _LESS:
+        more = (two in _MORE) != (three in ("no", "not", "never"))
+        return "least" if more else "most"
+    if (two == "at" or one == "of") and (found := _AT.get(two if one == "of" else one)) is not None:
+        return "least" if found == "least" else "most"
+    if (two, one) == ("up", "to") or (unit == "m/s" and one in ("under", "below")):
+        return "most"
+    return "least" if unit == "m/s" and one in ("over", "above", "exceeds", "exceeding") else ""
 
 
 def _is_often(said: Sequence[Token], first: int, last: int) -> bool:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from wsim.plan.schema.formula import VOCABULARY, Eventually, Finally, Not, Ordered, Then, Until
+from wsim.plan.asked.nodes import nodes
+from wsim.plan.schema.formula import VOCABULARY, Eventually, Finally, Ordered, Then, Until
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Objective
-    from wsim.plan.schema.nodes import Node
 
 TURN = 360.0  # [deg]
 _RETURNS = ("climbs_to", "bounces_to", "swings", "dies_down", "follows_path", "counts")
@@ -19,7 +18,7 @@ _ENDS = ("rests_on", "settles", "floats", "topples", "moves")  # kinds that are 
 
 def asks_often(objective: Objective, times: float) -> bool:
     """Whether it has an event that comes so many times, one after another; or as many turns."""
-    for node, denied in _nodes(objective):
+    for node, denied in nodes(objective):
         low, high = getattr(node, "low", None), getattr(node, "high", None)
         turns = str(getattr(node, "op", "")) == "turned_between" and low is not None and high is not None
         if turns and any(low <= way <= high for way in (TURN * times, -TURN * times)):  # type: ignore[operator]
@@ -38,7 +37,7 @@ def _most(node: Then) -> int:
 
 def asks_exactly(objective: Objective) -> bool:
     """Whether it denies that events come one after another: that there is one time more."""
-    return any(isinstance(node, Then) and denied for node, denied in _nodes(objective))
+    return any(isinstance(node, Then) and denied for node, denied in nodes(objective))
 
 
 def asks_again(objective: Objective) -> bool:
@@ -49,22 +48,17 @@ def asks_again(objective: Objective) -> bool:
     kind = VOCABULARY.get(str(getattr(top, "op", "")))
     if kind is not None and kind.alone.startswith("finally"):
         return True
-    for node, _ in _nodes(objective):
-        window = getattr(node, "window", None)
-        late = window is not None and window[0] > 0.0
-        if isinstance(node, Then | Ordered | Until | Finally) or str(getattr(node, "op", "")) in _RETURNS or late:
+    for node, _ in nodes(objective):
+        if isinstance(node, Finally) or str(getattr(node, "op", "")) in _RETURNS:
             return True
-    return any(isinstance(node, Eventually) and isinstance(of, Eventually) for node, _ in _nodes(objective)
+    return asks_order(objective)
+
+
+def asks_order(objective: Objective) -> bool:
+    """Whether it asks for one thing after another, or from some time on."""
+    for node, _ in nodes(objective):
+        window = getattr(node, "window", None)
+        if isinstance(node, Then | Ordered | Until) or (window is not None and window[0] > 0.0):
+            return True
+    return any(isinstance(node, Eventually) and isinstance(of, Eventually) for node, _ in nodes(objective)
                for of in node.parts())  # fmt: skip
-
-
-def _nodes(objective: Objective) -> Iterator[tuple[Node, bool]]:
-    """All nodes, with whether each is denied."""
-
-    def below(node: Node, denied: bool) -> Iterator[tuple[Node, bool]]:
-        yield node, denied
-        for part in node.parts():
-            yield from below(part, denied ^ isinstance(node, Not))
-
-    if objective.formula is not None:
-        yield from below(objective.formula, False)

@@ -23,6 +23,7 @@ _CONTACT = frozenset(("collides_with", "touches"))
 _MEETINGS = frozenset(("collides_with", "touches", "pushes", "never_touches", "not_touches", "not_collides_with"))
 _ORDINALS = "first second third fourth fifth last next other another same"
 _ONE_OF = frozenset(_ORDINALS.split())  # of some of one name
+_SOME = words.as_set("all both each either many most neither none one several some") | frozenset(words.WORDS)
 _FLOOR = frozenset(("ground", "floor"))
 _ELSE = ("touches_only", "stays_within", "follows_path", "conserves", "ordered")  # says something of other kinds
 Names = frozenset[str]
@@ -55,25 +56,25 @@ def strangers(plan: Plan, demand: Demand, objectives: Sequence[Objective]) -> st
         objectives = [each for each in objectives if shows(each, _CONTACT)]
     if not objectives or not (into or demand.base in MEETS):
         return ""
-    found = _parties(Words.of(plan.prompt), plan, demand)
+    found = takes_part(plan, demand)
     if found.bears is None:
         return ""
-    bears = _whole(plan, found.bears)
-    asked = [(_involved(each, plan), shows(each, _MEETINGS)) for each in objectives]
+    bears = whole_of(plan, found.bears)
+    asked = [(involved(each, plan), shows(each, _MEETINGS)) for each in objectives]
     known = [(names, meets) for names, meets in asked if names is not None]
     if len(known) < len(asked):
         return ""
     for doer in found.does or (None,):
         alike = doer == found.bears and len(found.bears) == 1  # "a ball hits a ball": which is which is not told
-        whole = doer and _whole(plan, doer)
+        whole = doer and whole_of(plan, doer)
         if not alike and not any(_is_about(names, meets, whole, bears) for names, meets in known):
-            who = f"{_said(doer)} and {_said(found.bears)}" if doer else _said(found.bears)
+            who = f"{said_of(doer)} and {said_of(found.bears)}" if doer else said_of(found.bears)
             about = "; ".join(" and ".join(sorted(names)) for names, _ in known)
             return f"it is said of {who}, and the objectives that are named for it are about {about}"
     return ""
 
 
-def _whole(plan: Plan, names: Names) -> Names:
+def whole_of(plan: Plan, names: Names) -> Names:
     """Things with all that is tied to them: what hits a lever's paddle hits the lever, and a scale is its pan.
 
     Not what hangs on the same frame as they do: two pendulums are two.
@@ -86,7 +87,8 @@ def _whole(plan: Plan, names: Names) -> Names:
     return found
 
 
-def _said(names: Names) -> str:
+def said_of(names: Names) -> str:
+    """Things that one word names, for people."""
     return " or ".join(sorted(names))
 
 
@@ -99,7 +101,7 @@ def _is_about(names: Names, meets: bool, doer: Names | None, bears: Names) -> bo
     return any(one in bears and (doer is None or other in doer) for one in names for other in names - {one})
 
 
-def _involved(objective: Objective, plan: Plan) -> Names | None:
+def involved(objective: Objective, plan: Plan) -> Names | None:
     """The plan's things that an objective names; None where it names others, or many at a time."""
     if objective.formula is None:
         found = {name for name in (objective.object, objective.ref) if name is not None}
@@ -111,22 +113,29 @@ def _involved(objective: Objective, plan: Plan) -> Names | None:
     return frozenset(found) if found and found <= known else None
 
 
-def _parties(read: Words, plan: Plan, demand: Demand) -> Parties:
+def takes_part(plan: Plan, demand: Demand) -> Parties:
+    """Who takes part in what a verb says.
+
+    Args:
+        plan: The plan, whose things are meant.
+        demand: The verb.
+    """
+    read = Words.of(plan.prompt)
     verbs = {each.first for each in demands(plan.prompt) if each.kind in ("verb", "state", "beyond")}
-    named = _mentions(read, plan)
+    named = mentions(read, plan)
     k = demand.first
     passive = text_at(read.said, k + 1) == "by"
     if demand.base in _INTO:
-        return Parties(_before(read, named, verbs, k), _met(read, named, verbs, k + 1))
+        return Parties(before(read, named, verbs, k), _met(read, named, verbs, k + 1))
     bears = _behind(read, named, verbs, k + 1 + passive)
-    does = _before(read, named, verbs, k)
+    does = before(read, named, verbs, k)
     if bears is None and demand.base in _EACH_OTHER and not passive:  # "two balls collide", "a ball and a box meet"
         bears = does[1] if len(does) == 2 else does[0] if len(does) == 1 and len(does[0]) > 1 else None
         return Parties(does[:1], bears)
     return Parties(does, bears)
 
 
-def _mentions(read: Words, plan: Plan) -> Mentions:
+def mentions(read: Words, plan: Plan) -> Mentions:
     """What of the plan the prompt's nouns name."""
     own = {item.name: set(item.name.lower().split("_")) | (_FLOOR if item.primitive == "ground" else set())
            for item in plan.objects}  # fmt: skip
@@ -198,7 +207,7 @@ def _is_a_noun(read: Words, end: int) -> bool:
     return plain or end + 1 in read.breaks or end + 1 == len(read.said)
 
 
-def _before(read: Words, named: Mentions, verbs: set[int], k: int) -> tuple[Names, ...]:
+def before(read: Words, named: Mentions, verbs: set[int], k: int) -> tuple[Names, ...]:
     """Who does it: the noun before a verb that no preposition and no other verb governs, and those tied to it."""
     found: list[Names] = []
     i = k - 1
@@ -216,7 +225,11 @@ def _before(read: Words, named: Mentions, verbs: set[int], k: int) -> tuple[Name
         free = begin
         while free > 0 and _describes(read, free - 1, verbs):
             free -= 1
+            if read.said[free].text in words.DETERMINERS:  # with it a noun begins: "hits the box the crate falls"
+                break
         governed = text_at(read.said, free - 1)
+        if governed == "of" and text_at(read.said, free - 2) in _SOME:  # "neither of the balls", "two of the balls"
+            governed = ""
         is_object = free - 1 in verbs and governed not in ("let", "lets", "make", "makes", "watch", "see")
         if governed in words.PREPOSITIONS - {"after", "before", "until"} or is_object:
             if found:
@@ -233,4 +246,4 @@ def _describes(read: Words, i: int, verbs: set[int]) -> bool:
     text = read.said[i].text
     if i + 1 in read.breaks or i in verbs:
         return False
-    return text in words.DETERMINERS - {"that"} or text not in words.NO_NOUN
+    return text in words.DETERMINERS - {"that"} or text in words.WORDS or text not in words.NO_NOUN

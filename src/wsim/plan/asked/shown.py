@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from wsim.plan.schema.formula import Predicate
+from wsim.plan.schema.formula import Always, Eventually, Not, Predicate
 
 if TYPE_CHECKING:
     from collections.abc import Sequence, Set
@@ -12,7 +12,10 @@ if TYPE_CHECKING:
     from wsim.plan.schema import Objective
     from wsim.plan.schema.nodes import Node
 
-BLOWS = frozenset(("hit", "strike", "collide", "crash", "smash", "ram", "bump", "slam", "kick", "slap"))
+MOST = 0.9  # share of a run that is all of it
+BLOWS = frozenset(
+    ("hit", "strike", "collide", "crash", "smash", "ram", "bump", "slam", "kick", "slap", "whack", "thump")
+)
 _BLOWS = "collides_with touches pushes topples stops_before bounces_to climbs_to rests_on"
 _FALLS = """collides_with rests_on falls_freely drops topples submerged sinks floats flies bounces_to counts
 contained_in stays_inside tilts tilts_to stays_on"""
@@ -32,7 +35,7 @@ _SHOW = (  # verbs of one meaning alone, and the kinds of objective and predicat
     (" ".join(sorted(BLOWS)), _BLOWS),
     ("fall drop land plunge plummet plop", _FALLS),
     ("turn spin rotate revolve swivel pivot whirl twirl", _TURNS),
-    ("topple knock tip overturn collapse tumble", _OVER),
+    ("topple knock tip overturn collapse tumble upset keel", _OVER),
     ("stop halt brake settle park", _STOPS),
 )
 # What shows that something does not happen, beside a denial of what would show that it does.
@@ -44,7 +47,7 @@ _APART = "never_touches stops_before touches_only stays_within flies falls_freel
 _NOT_SHOWN = (
     (" ".join(sorted(BLOWS)) + " touch meet reach scrape graze", _APART),
     ("fall drop topple knock tip overturn collapse tumble land capsize", _STAYS),
-    ("leave escape exit spill overflow empty drain splash", _KEEPS),
+    ("leave escape exit spill overflow empty drain splash leak drip gush", _KEEPS),
     ("move slide shift slip budge drift go turn spin rotate swing roll skid swivel pivot", _STILL),
     ("bounce rebound", "rests_on stays_on lies_on settles dies_down"),
     ("float", "sinks submerged rests_on lies_on"),
@@ -86,6 +89,19 @@ def is_blow_shown(base: str, objectives: Sequence[Objective]) -> bool:
         return True
     several = len({each.object for each in objectives}) > 1
     return several or any(shows(each, SHOWN_BY[base]) for each in objectives)
+
+
+def for_a_while(objective: Objective, duration: float) -> bool:
+    """Whether what it asks is so at some moment, or in a part of a run alone: not all the way.
+
+    Args:
+        objective: Of a plan.
+        duration: Of the run [s].
+    """
+    top = objective.formula
+    if isinstance(top, Eventually):
+        return isinstance(top.of, Not)
+    return isinstance(top, Always) and top.window is not None and (top.window[1] or duration) < MOST * duration
 
 
 def shows_not(objective: Objective, base: str) -> bool:

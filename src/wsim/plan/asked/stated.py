@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
+from wsim.plan.asked.nodes import nodes
 from wsim.plan.layout.boxes import rotation
 from wsim.plan.schema.clause import OF_CORDS, WHOLE
 from wsim.plan.schema.formula import Always, Mean, Predicate
@@ -13,13 +14,19 @@ from wsim.plan.schema.formula import Always, Mean, Predicate
 if TYPE_CHECKING:
     from wsim.plan.asked.demands import Demand
     from wsim.plan.schema import Joint, Objective, Plan, PlanObject
+    from wsim.plan.schema.nodes import Node
     from wsim.plan.schema.schedules import SchedulePlan
 
 ROUNDING = 0.05  # share: "about half a metre" is planned as 0.48 m
+WIDE = 2.5  # times a number, and a part of it: a range that reaches further asks for something else
 FIELDS = {  # by unit: where a number of it may stand in an object or a joint that is named without a property
     "m": ("size", "limits", "anchor", "length"), "kg": ("mass",), "kg/m^3": ("density",),
     "m/s": ("velocity", "surface_velocity", "drive", "actuation"),
     "deg/s": ("spin", "drive"), "deg": ("limits", "drive", "direction"), "N": ("drive",), "s": ("duration",),
+}  # fmt: skip
+OF_UNIT = {  # what can be of no other
+    "size": "m", "length": "m", "mass": "kg", "density": "kg/m^3", "velocity": "m/s", "surface_velocity": "m/s",
+    "spin": "deg/s", "duration": "s",
 }  # fmt: skip
 OPEN = ("place", "level", "actuation")  # a stated distance may be the difference of two places, or one of many
 _POINTS = ("target", "center", "path", "at")  # of formulas: places in the world
@@ -31,6 +38,8 @@ def states(plan: Plan, name: str, field: str, demand: Demand) -> bool:
         return True
     if name in {each.name for each in plan.schedules}:
         field = field or ("times" if demand.unit == "s" else "values")
+    if demand.unit and OF_UNIT.get(field, demand.unit) != demand.unit:
+        return False
     fields = (field,) if field else FIELDS.get(demand.unit, ())
     return any(close(value, demand) for each in fields for value in values(plan, name, each))
 
@@ -38,22 +47,48 @@ def states(plan: Plan, name: str, field: str, demand: Demand) -> bool:
 def asks(objective: Objective, demand: Demand) -> bool:
     """Whether an objective has a number, in a range, or a place that may come of it."""
     given = {objective.value, objective.tolerance} - {None}
-    if any(close(float(value), demand) for value in given if value is not None):
+    least = objective.kind in ("moves", "goes_down") and demand.limit == "most"
+    if not least and any(close(float(value), demand) for value in given if value is not None):
         return True
-    for node in objective.formula.walk() if objective.formula is not None else ():
-        fields = dict(node)
-        if demand.unit in ("m", "deg") and any(isinstance(fields.get(name), (tuple, float)) for name in _POINTS):
+    return any(_has(node, denied, demand) for node, denied in nodes(objective))
+
+
+def _has(node: Node, denied: bool, demand: Demand) -> bool:
+    """Whether a node of a formula has it."""
+    fields = dict(node)
+    if demand.unit in ("m", "deg") and any(isinstance(fields.get(name), (tuple, float)) for name in _POINTS):
+        return True
+    low, high, least = fields.pop("low", None), fields.pop("high", None), fields.pop("least", None)
+    if isinstance(low, float) and isinstance(high, float) and _in_range(low, high, denied, demand):
+        return True
+    if isinstance(least, float) and close(least, demand) and (demand.limit == "most") == denied:
+        return True
+    window = fields.get("window")
+    if demand.limit == "since" and isinstance(window, tuple):
+        fields.pop("window")
+        if window[0] > 0.0 and not ends_by(window[1], demand):
             return True
-        low, high = fields.get("low"), fields.get("high")
-        if isinstance(low, float) and isinstance(high, float) and _between(low, high, demand):
-            return True
-        if any(close(value, demand) for value in _numbers(fields.values())):
-            return True
-        window = fields.get("window")
-        holds = demand.unit == "s" and isinstance(node, Always | Mean)
-        if holds and isinstance(window, tuple) and _lasts(window[1] - window[0], demand):
-            return True
-    return False
+    if any(close(value, demand) for value in _numbers(fields.values())):
+        return True
+    holds = demand.unit == "s" and isinstance(node, Always | Mean) and isinstance(window, tuple)
+    return holds and window is not None and window[1] is not None and _lasts(window[1] - window[0], demand)
+
+
+def _in_range(low: float, high: float, denied: bool, demand: Demand) -> bool:
+    """Whether a range has a number, on the side of it that the prompt says; one that holds of anything has none."""
+    assert demand.value is not None
+    value = abs(demand.value)
+    nearest = 0.0 if low * high < 0.0 else min(abs(low), abs(high))
+    furthest = max(abs(low), abs(high))
+    at_end = close(low, demand) or close(high, demand)
+    if denied:
+        return at_end
+    if demand.limit == "least":
+        return nearest >= value * (1.0 - ROUNDING)
+    if demand.limit == "most":
+        return furthest <= value * (1.0 + ROUNDING)
+    inside = nearest <= value * (1.0 + ROUNDING) and furthest >= value * (1.0 - ROUNDING)
+    return at_end or (inside and furthest <= WIDE * value and nearest * WIDE >= value)
 
 
 def _lasts(seconds: float, demand: Demand) -> bool:
@@ -78,12 +113,6 @@ def ends_by(time: float | None, demand: Demand) -> bool:
     """Whether a time is a stated one, or before it."""
     assert demand.value is not None
     return time is not None and time <= demand.value * (1.0 + ROUNDING)
-
-
-def _between(low: float, high: float, demand: Demand) -> bool:
-    assert demand.value is not None
-    slack = ROUNDING * max(abs(low), abs(high))
-    return any(low - slack <= value <= high + slack for value in (demand.value, -demand.value))
 
 
 def _numbers(fields: Iterable[object]) -> Iterator[float]:

@@ -86,6 +86,9 @@ def _of_number(plan: Plan, demand: Demand) -> Iterator[int | str]:
         for field in OF_JOINTS[1:]:
             if any(close(value, demand) for value in values(plan, joint.name, field)):
                 yield f"{joint.name}.{field}"
+    for cord in plan.cords if demand.unit == "m" else ():
+        if close(cord.length or 0.0, demand):
+            yield f"{cord.name}.length"
     for schedule in plan.schedules if demand.unit else ():
         if states(plan, schedule.name, "", demand):
             yield schedule.name
@@ -97,7 +100,7 @@ def _of_number(plan: Plan, demand: Demand) -> Iterator[int | str]:
         if demand.often:
             yield from (k for k, each in enumerate(plan.objectives) if asks_often(each, demand.value or 0.0))
         else:
-            yield from named or _as_many(plan, demand)
+            yield from named or _as_many(plan, demand) or _doing_so(plan, demand)
     if demand.unit == "s" and close(plan.simulation.duration, demand):
         yield f"{WHOLE}.duration"
 
@@ -105,6 +108,16 @@ def _of_number(plan: Plan, demand: Demand) -> Iterator[int | str]:
 def _counted(item: PlanObject, demand: Demand) -> bool:
     words = [token.text for token in tokens(item.words)]
     return any(token.text in words for token in tokens(demand.text))
+
+
+def _doing_so(plan: Plan, demand: Demand) -> list[str]:
+    """Things of which the verb right behind a number is asked, if they are as many: "the first two float"."""
+    said = [token.text for token in tokens(plan.prompt) if not token.stops][demand.last + 1 : demand.last + 3]
+    base = next((base for text in said if (base := stem(text)) in SHOWN_BY), None)
+    fluids = {item.name for item in plan.objects if item.state == "fluid"}
+    asked = [each.object for each in plan.objectives if base and shows(each, SHOWN_BY[base])]
+    found = dict.fromkeys(name for name in asked if name not in fluids)
+    return list(found) if len(found) == demand.value else []
 
 
 def _as_many(plan: Plan, demand: Demand) -> list[str]:

@@ -8,44 +8,54 @@ from __future__ import annotations
 import math
 
 
-def _set(words: str) -> frozenset[str]:
+def as_set(words: str) -> frozenset[str]:
+    """The words of a text."""
     return frozenset(words.split())
 
 
 # What happens: an objective must ask for it.
-MOTIONS = _set(
+MOTIONS = as_set(
     """
-    accelerate arc arrive ascend balance barrel bob bounce brake bump capsize career careen carry catch chase
-    circle climb coast collapse collide come crash creep cross crush dangle dart decelerate deflect descend dip
-    dislodge dive drag drain drift drive drop empty enter escape exit fall fill flap flip float flow fly follow
-    funnel gallop glide go grab grasp halt haul hit hop hover hurtle impact jerk jolt jump kick knock land lap leap
-    leave lift lower lurch march meet migrate miss move nudge orbit oscillate overflow overtake overturn pass
-    patrol pick pitch pivot plop plow plough plummet plunge pour precess pull push raise ram reach rebound recoil
-    reel return reverse revolve ricochet ride rise rock roll rotate run rush sail scatter settle shake shift shove
-    sink skate skid skim skip slam slap slide slip slosh slow smash snag soar speed spill spin spiral splash spread
-    spurt squirt stack stagger steer stop strike stroll sway sweep swerve swim swing swirl swivel tap tilt tip
-    topple toss touch tow travel traverse trickle trip trot tumble turn twirl twist veer vibrate waddle walk whirl
-    wobble yaw yield
+    accelerate alight arc arrive ascend balance barrel bob bounce brake bump capsize careen career carry catch
+    chase circle climb close coast collapse collide come crash crawl creep cross crush dangle dart decelerate
+    deflect deliver descend detach dip dislodge dive dodge drag drain drift drip drive drop emerge empty enter
+    escape evade exit fall fill flap flip float flow fly follow funnel gallop glide go grab grasp graze gush
+    gyrate halt haul hit hoist hop hover hurtle impact jerk jolt jostle judder jump keel kick knock land lap
+    leap leave lift lower lurch march meet merge migrate miss move nudge open orbit oscillate overflow overtake
+    overturn pass patrol pick pitch pivot plop plough plow plummet plunge poke pour precess prod pull push
+    quiver raise ram reach rebound recoil reel return reverse revolve ricochet ride rise rock roll rotate run
+    rush sail scatter settle shake shift shove shut sink skate skid skim skip slam slap slide slip slither slosh
+    slow smash snag soar speed spill spin spiral splash spread spurt squirt stack stagger steer stop strike
+    stroll sway sweep swerve swim swing swirl swivel tap teeter thump tilt tip topple toss totter touch tow
+    transport travel traverse tremble trickle trip trot trundle tug tumble turn twirl twist unlock unwind upset
+    vault veer vibrate waddle walk whack whirl wobble yaw yield zigzag zoom
+    """
+)
+# Of a thing itself, and how far it goes may stand behind it: "rolls 3 m".
+GOES = as_set(
+    """
+    coast creep drift drive fly glide go hop kick launch march move nudge push roll run sail send shoot shove skid
+    slide slip speed throw toss travel walk
     """
 )
 # What sets a thing going: its start may show it as well, a velocity, a drive.
-CAUSES = _set(
+CAUSES = as_set(
     """
     crank dispense drive drop eject fire fling flick hurl inject kick launch lob nudge propel pull push release
     roll run rotate send shoot shove slide spin start swing throw toss turn
     """
 )
 # How things stand to each other: any evidence will do, the objects and joints themselves included.
-STATES = _set(
+STATES = as_set(
     """
-    align anchor arrange attach bear bolt bridge build chain clamp clip connect contain cover dangle embed enclose
-    face fasten fit fix fold glue guide hang hinge hold hook join keep lay lean lie line link load lock mount park
-    perch pile pin place position prop put reside rest screw seal separate sit span stand stay stick string
+    align anchor arrange attach bear bolt bridge build chain clamp clip connect contain cover dangle embed end
+    enclose face fasten fit fix fold glue guide hang hinge hold hook join keep lay lean lie line link load lock mount
+    park perch pile pin place position prop put reside rest screw seal separate sit span stand stay stick string
     submerge support surround suspend tether tie wait weigh weld wrap
     """
 )
 # What nothing in wsim does: bodies are rigid, water is water, and there is neither heat nor field.
-BEYOND = _set(
+BEYOND = as_set(
     """
     absorb attract bake bend blaze bleed boil break buckle burn burst char chip chop compress condense conduct cook
     cool corrode crack crease crumble crumple curl cut deflate deform dent dissolve drape electrify erode evaporate
@@ -56,9 +66,9 @@ BEYOND = _set(
     """
 )
 # But springs do these, and joints with a drive that is stiff.
-SPRINGY = _set("compress squeeze stretch")
+SPRINGY = as_set("compress squeeze stretch")
 # What a schedule does: "opens after a second", "is lifted at 0.5 m/s". How a thing goes on then, or stops, is seen.
-SCHEDULED = CAUSES - _set("roll run slide swing") | _set("apply close lift lower open raise shut twist wait")
+SCHEDULED = CAUSES - as_set("roll run slide swing") | as_set("apply close lift lower open raise shut twist wait")
 IRREGULAR = {
     "ran": "run", "fell": "fall", "fallen": "fall", "slid": "slide", "swung": "swing", "spun": "spin",
     "struck": "strike", "threw": "throw", "thrown": "throw", "shot": "shoot", "flew": "fly", "flown": "fly",
@@ -72,12 +82,14 @@ IRREGULAR = {
     "lies": "lie", "ties": "tie", "shook": "shake", "shaken": "shake", "bore": "bear", "borne": "bear",
     "leant": "lean", "spilt": "spill", "drew": "draw",
 }  # fmt: skip
-SAME_PAST = _set("hit put cut burst spread split")  # their past is their base
+SAME_PAST = as_set("hit put cut burst spread split")  # their past is their base
 
-DETERMINERS = _set("a an the this that these those its his her their our my your each every some any no both")
+DETERMINERS = as_set("a an the this that these those its his her their our my your each every some any no both")
 # After these a base form is a verb: "lets it fall", "to roll", "will tip".
-BEFORE_BASE = _set("to will can must should may would could shall let lets make makes and then it they which that who")
-PREPOSITIONS = _set(
+BEFORE_BASE = as_set(
+    "to will can must should may would could shall let lets make makes and then it they which that who"
+)
+PREPOSITIONS = as_set(
     """
     above across against along around at behind below beneath beside between beyond by down from in inside into
     near of off on onto out over past through towards toward under underneath until up upon with within without
@@ -90,7 +102,7 @@ NO_NOUN = (
     DETERMINERS
     | PREPOSITIONS
     | BEFORE_BASE
-    | _set(
+    | as_set(
         """
         after again all also am and are as be been before being but could did do does each even ever first for former
         had has have he her here him how if is just last later latter less more most must next not now once one only
@@ -100,20 +112,23 @@ NO_NOUN = (
         """
     )
 )
-QUANTITIES = _set(  # whose value may stand right behind them
+QUANTITIES = as_set(  # whose value may stand right behind them
     """
     acceleration angle coefficient damping density depth distance factor friction gravity height length level mass
     radius rate ratio restitution scale share size speed spacing stiffness thickness time velocity weight width
     """
 )
-NUMBERED = _set("number no nr type model mark mk version class series")  # a number behind these is a name's
-COMPARES = _set("as the its their that this more less")  # after "twice" and "three times": how much, not how often
+NUMBERED = as_set("number no nr type model mark mk version class series")  # a number behind these is a name's
+COMPARES = as_set("as the its their that this more less")  # after "twice" and "three times": how much, not how often
 BY_THEN = frozenset((("less", "than"), ("later", "than"), ("at", "most")))  # before a time: by then at the latest
-BEFORE_TIMES = _set("within under in for after than every about almost over just")  # "a second" behind these is a time
-DENIES = _set("not never cannot without no nothing none neither nobody avoid avoids avoiding avoided")
-KEEPS_FROM = _set("keep keeps kept prevent prevents prevented stop stops stopped hinder hinders hindered")
+BEFORE_TIMES = as_set(
+    "within under in for after than every about almost over just"
+)  # "a second" behind these is a time
+DENIES = as_set("not never cannot without no nothing none neither nobody avoid avoids avoiding avoided")
+OF_TIME = as_set("after as before during first initially once since still then until when while yet")
+KEEPS_FROM = as_set("keep keeps kept prevent prevents prevented stop stops stopped hinder hinders hindered")
 # Between a denial and its verb: "does not ever get to be touched", "without a single block falling".
-BETWEEN = _set(
+BETWEEN = as_set(
     """
     ever even once yet then either or nor to be been being get gets got have has had do does did will would can could
     at any all time longer again
@@ -121,8 +136,8 @@ BETWEEN = _set(
 )
 
 # Manner without a number: nothing measures it unless a clause of its own says what does.
-MANNERS = _set("gently softly slowly quickly rapidly suddenly smoothly violently carefully lightly barely hard fast")
-NO_MANNER = _set(
+MANNERS = as_set("gently softly slowly quickly rapidly suddenly smoothly violently carefully lightly barely hard fast")
+NO_MANNER = as_set(
     """
     assembly belly bully completely directly evenly exactly family finally fly freely fully horizontally hourly
     initially jelly likely lily mutually nearly only partially perfectly previously rally rapidly reply roughly
@@ -190,7 +205,7 @@ def _units() -> dict[tuple[str, ...], tuple[str, float]]:
 
 UNITS = _units()
 LONGEST_UNIT = max(map(len, UNITS))
-SPELLED = _set("metre meter centimetre centimeter kilometre kilometer kilogram")  # "a metre above" is one
+SPELLED = as_set("metre meter centimetre centimeter kilometre kilometer kilogram")  # "a metre above" is one
 
 
 def stem(word: str) -> str | None:
