@@ -70,7 +70,7 @@ class _Clauses(Wheres):
         """The clauses; those after "a tank in which" say where their things are, up to the next full stop."""
         clauses: list[Clause] = []
         within, later = None, None
-        for before, child in pairwise([None, *children]):
+        for before, child, after in zip([None, *children], children, [*children[1:], None], strict=False):
             if isinstance(child, Clause) and before == "list" and clauses and list_of(clauses[-1], child):
                 continue
             if isinstance(child, Place) and child.preposition == "after":
@@ -82,7 +82,7 @@ class _Clauses(Wheres):
                     clauses[-1].subjects += child.subjects  # "in a tank there is a stone and a log"
                     continue
                 if before is None and clauses:
-                    gapped(clauses[-1], child)
+                    gapped(clauses[-1], child, has=after == "with")
                 if before == "with" and clauses and clauses[-1].actions and not child.actions:
                     beside_it(clauses[-1], child)
                 child.within, child.given = within, before == "with"

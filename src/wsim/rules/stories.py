@@ -42,13 +42,19 @@ def names_only(clause: Clause) -> bool:
     return not clause.actions and all(phrase.kind != "choice" for phrase in clause.subjects)
 
 
-def gapped(clause: Clause, named: Clause) -> None:
-    """ "Drop a ball into a tank and a box onto a table": the verb is said once."""
+def gapped(clause: Clause, named: Clause, has: bool) -> None:
+    """ "Drop a ball into a tank and a box onto a table": the verb is said once.
+
+    Args:
+        clause: With the verb.
+        named: What may be without.
+        has: Whether more is said of it: "and a conveyor with two crates runs".
+    """
     places = named.subjects[-1].places if named.subjects else []
     goes = bool(places) and all(place.preposition in _GOALS for place in places)
     last = clause.actions[-1] if clause.actions else None
     ends = last is not None and (last.target or (last.places and last.places[-1].phrase))
-    if not places and names_only(named) and last is not None and (ends or named.then or not clause.inverted):
+    if not has and not places and names_only(named) and last is not None and (ends or named.then or not clause.inverted):
         # "rolls into a box and a brick", "rolls and a brick"
         raise NotUnderstood([f"{last.words} and {named.words}"], "cannot tell what is said of the last of these")
     if named.actions or not goes or len(clause.actions) != 1 or clause.actions[0].target is not None:
