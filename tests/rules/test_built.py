@@ -1,4 +1,4 @@
-"""Nothing of a sentence is lost: drawn sentences are planned as they say, or refused in a few lines that name the words."""
+"""Nothing of a sentence is lost: drawn ones are planned as they say, or refused in a few lines that name the words."""
 
 import re
 from dataclasses import dataclass, field
@@ -75,7 +75,9 @@ def sentences(draw):
     """Up to three clauses about things of different colours."""
     colors = draw(st.permutations(COLORS))
     drawn = [draw(clauses(colors[2 * k], colors[2 * k + 1])) for k in range(draw(st.integers(1, 3)))]
-    whole = Drawn(text=draw(st.sampled_from((" and ", ", and ", ". ", "; ", " while "))).join(each.text for each in drawn))
+    whole = Drawn(
+        text=draw(st.sampled_from((" and ", ", and ", ". ", "; ", " while "))).join(each.text for each in drawn)
+    )
     for each in drawn:
         whole.counts |= each.counts
         whole.goes |= each.goes

@@ -12,6 +12,7 @@ from wsim.rules.lexicon import lexicon
 from wsim.rules.phrases import Action, Place
 from wsim.rules.places import MANNERS, UPRIGHT, arrange, common, do, hang, part, put, stand, support, where
 from wsim.rules.reader import EACH_OTHER, Reader
+from wsim.rules.starts import check_starts
 from wsim.rules.tokens import NOT_IN_THIS_ORDER, NotUnderstood
 
 MOVES = ("roll", "slide", "push", "throw", "swing", "meet", "hang", "tilt")  # what a thing does on the ground alone
@@ -20,25 +21,9 @@ _INTO = ("into", "to", "against", "towards", "at")
 
 def act(reader: Reader, thing: Thing, action: Action) -> None:
     """Let a thing do what a clause says."""
-    ends = {place.side.predicate if place.side is not None else "between": place for place in action.places
-            if place.preposition in ("side", "between")}  # fmt: skip
-    told = action.verb in _ENDS or (action.verb == "rest" and not action.words.startswith(_IS))
-    for predicate, place in ends.items():
-        goes = (_MOVING if told else set[str]()) & {*thing.does} or thing.off
-        if goes and predicate not in ("SPAWNED-ABOVE", "FACING-TO", "FACING-OPPOSITE-TO") or _under(action, predicate):
-            raise NotUnderstood([f"{action.words}"], "says where things start, not where they come to:")
+    check_starts(thing, action)
     reader.cast.said.append((thing, action))
     (_be if action.verb == "be" else _RULES[action.verb])(reader, thing, action)
-
-
-_IS = ("is ", "are ", "was ", "were ")
-_ENDS = ("land", "stop", "bounce", "roll", "slide", "move", "go", "fall", "drop", "push", "hit", "fly", "throw")
-_MOVING = {"roll", "slide", "push", "throw", "swing", "meet", "ride"}
-
-
-def _under(action: Action, predicate: str) -> bool:
-    """Whether something goes under another: it would start there."""
-    return predicate == "under" and action.verb in ("roll", "slide", "move", "go", "push", "fly", "throw", "drive")
 
 
 def meet(reader: Reader, things: list[Thing], action: Action) -> None:
@@ -251,6 +236,8 @@ def _go(reader: Reader, thing: Thing, action: Action) -> None:
         raise UserError(f"{action.words!r}: the seesaw goes down at its {seesaw.side} end, the prompt says so")
     seesaw.side = falls_
     do(seesaw, "tilt")
+    if thing is not seesaw and not down:
+        do(thing, "rise")
 
 
 def _balance(reader: Reader, thing: Thing, action: Action) -> None:

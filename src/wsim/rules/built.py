@@ -1,4 +1,4 @@
-"""Whether a plan has what the prompt says: each thing as often, where and on what it is said to be, going where it is to.
+"""Whether a plan has what the prompt says: each thing as often, where, on what, and going where it is said to.
 
 The rules build what they understand; here the plan is read against that, whatever rule built it. What they lost on the
 way is refused, with the words that it was said in.
@@ -45,8 +45,14 @@ def check_built(plan: Plan, cast: Cast, names: Names) -> None:
         own = [plan.object(name) for name in names.get(id(thing), [])]
         if len(own) != thing.count:
             raise NotUnderstood([thing.words], f"has built {len(own)} of these, not {thing.count}")
-        for lost in (*_carried(thing, own, plan, names), *_met(thing, own, plan, names), *_beside(thing, own, plan, names)):
-            raise NotUnderstood([f"{thing.words} {lost}"], "knows these words, but could not build all of them together:")
+        for lost in (
+            *_carried(thing, own, plan, names),
+            *_met(thing, own, plan, names),
+            *_beside(thing, own, plan, names),
+        ):
+            raise NotUnderstood(
+                [f"{thing.words} {lost}"], "knows these words, but could not build all of them together:"
+            )
         if thing.direction is not None and _GOES & {*thing.does} and not all(_heads(thing, one, plan) for one in own):
             raise NotUnderstood([f"{thing.words} to the {thing.direction}"], "cannot let this go there:")
     _check_ways(plan, cast, names)

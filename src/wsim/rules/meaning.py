@@ -9,7 +9,9 @@ from wsim.assets import get
 from wsim.errors import UserError
 from wsim.rules.actions import MOVES, act, meet
 from wsim.rules.cast import CARRIERS, Cast, Pour, Thing
+from wsim.rules.later import later
 from wsim.rules.lexicon import lexicon
+from wsim.rules.partly import others
 from wsim.rules.phrases import Action, Clause, Phrase, Place
 from wsim.rules.places import CARRIED, UPRIGHT, common, do, put_inside, stand, support
 from wsim.rules.reader import EACH_OTHER, Reader
@@ -46,7 +48,7 @@ def _of_the_last(clause: Clause) -> list[Clause]:
 def _clause(reader: Reader, clause: Clause) -> None:
     """Take in one clause."""
     _say_held(clause)
-    before = {id(thing): [*thing.does] for thing in reader.cast.things}
+    did = {id(thing): [*thing.does] for thing in reader.cast.things}
     subjects: list[Thing] = []
     scenery = []
     pending: list[Thing] = []
@@ -101,26 +103,9 @@ def _clause(reader: Reader, clause: Clause) -> None:
                 if each is not None:
                     _say(reader, each, subjects)
     if clause.then:
-        _later(reader, clause, subjects, before)
+        later(reader, clause, subjects, did)
     if subjects:
         reader.last = [thing for thing in subjects if thing in reader.cast.things] or reader.last
-
-
-def _later(reader: Reader, clause: Clause, things: list[Thing], before: dict[int, list[str]]) -> None:
-    """ "Then": what goes on, or is hit, does so in its time; what else falls then is let go later.
-
-    Raises:
-        NotUnderstood: It would start with all the rest.
-    """
-    for thing in things:
-        did = before.get(id(thing), [])
-        new = [what for what in thing.does if what not in did]
-        met = any(thing in (one.target, one.support, one.meets) for one in reader.cast.things)
-        if "drop" in new and not _GOING & {*did} and thing.delay is None:
-            thing.delay = THEN
-            reader.cast.assume(thing.words, f"let go after {THEN:g} s", "the prompt says then, not when")
-        elif _GOING & {*new} and not _GOING & {*did} and not met and thing.delay is None:
-            raise NotUnderstood([f"then {clause.words}"], "starts what moves at once; say 'after two seconds', not")
 
 
 def _only(reader: Reader, clause: Clause, things: list[Thing]) -> None:
@@ -359,7 +344,7 @@ def _settle(reader: Reader) -> None:
     """Give each thing whose place is open the one that the rest of the scene leaves for it."""
     for thing in [one for one in reader.cast.things if one.count > 1 and one.noun.family in _SINGLE]:
         reader.split(thing)
-    _others(reader)
+    others(reader)
     for thing in reader.cast.things:
         _share_table(thing)
         check_used(thing, struck=any(one.target is thing for one in reader.cast.things))
@@ -378,26 +363,6 @@ def _settle(reader: Reader) -> None:
         raise NotUnderstood(["the prompt"], "found nothing to build in")
 
 
-def _others(reader: Reader) -> None:
-    """Let all else in the water do the other than what only some do, or what is said of some of several."""
-    cast = reader.cast
-    for verb in {verb for _, verb in cast.only}:
-        alone = {id(thing) for thing, one in cast.only if one == verb}
-        for thing in cast.things:
-            if id(thing) not in alone and thing.place == "water":
-                do(thing, _INSTEAD[verb])
-    for some, rest in reader.partly:
-        ends = {end for thing in some for end in _INSTEAD if end in thing.does}
-        if len(ends) != 1 or not rest or any({*_INSTEAD, "submerge"} & {*thing.does} for thing in rest):
-            continue
-        instead = _INSTEAD[ends.pop()]
-        for thing in rest:
-            do(thing, instead)
-            thing.place = thing.place or "water"
-        choice = f"the other {len(rest)}: to {instead}" if len(rest) > 1 else f"the other: to {instead}"
-        cast.assume(rest[0].words, choice, f"the prompt says what {len(some)} of {len(some) + len(rest)} do")
-
-
 def _check_water(cast: Cast) -> None:
     """Refuse what is stacked or rolls where there is water."""
     for thing in cast.things:
@@ -408,9 +373,6 @@ def _check_water(cast: Cast) -> None:
             )
 
 
-_INSTEAD = {"float": "sink", "sink": "float"}
-_GOING = {"drop", "roll", "slide", "push", "throw", "swing", "topple", "meet", "run"}  # what sets or keeps one going
-THEN = 1.0  # after which is let go what falls then [s]
 _SINGLE = ("ramp", "seesaw", "belt", "turntable")  # families that are built one by one
 
 

@@ -266,7 +266,12 @@ def refuse_afloat(reader: Reader, thing: Thing, place: Place) -> None:
         NotUnderstood: It is on what is in the water.
     """
     swims = any(one is not thing and one.place == "water" for one in reader.last)
-    if place.preposition in ("on", "onto") and place.phrase is not None and place.phrase.part in ("it", "them") and swims:
+    if (
+        place.preposition in ("on", "onto")
+        and place.phrase is not None
+        and place.phrase.part in ("it", "them")
+        and swims
+    ):
         raise NotUnderstood([place.words], "stacks things on the ground, not on what is in the water:")
 
 

@@ -54,7 +54,13 @@ def gapped(clause: Clause, named: Clause, has: bool) -> None:
     goes = bool(places) and all(place.preposition in _GOALS for place in places)
     last = clause.actions[-1] if clause.actions else None
     ends = last is not None and (last.target or (last.places and last.places[-1].phrase))
-    if not has and not places and names_only(named) and last is not None and (ends or named.then or not clause.inverted):
+    if (
+        not has
+        and not places
+        and names_only(named)
+        and last is not None
+        and (ends or named.then or not clause.inverted)
+    ):
         # "rolls into a box and a brick", "rolls and a brick"
         raise NotUnderstood([f"{last.words} and {named.words}"], "cannot tell what is said of the last of these")
     if named.actions or not goes or len(clause.actions) != 1 or clause.actions[0].target is not None:

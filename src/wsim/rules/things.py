@@ -180,7 +180,9 @@ class Things(Transformer):
         """Some of what was spoken of before."""
         of = next((child for child in children if isinstance(child, Phrase)), None)
         count = next((meant(child) for child in children if is_of(child, "COUNT")), None)
-        return Phrase("choice", self._words(meta), definite=True, count=count, choice=which, owner=of, at=meta.start_pos)
+        return Phrase(
+            "choice", self._words(meta), definite=True, count=count, choice=which, owner=of, at=meta.start_pos
+        )
 
     def group(self, meta: Any, children: list[Any]) -> Phrase:
         phrase = Phrase("group", self._words(meta), arrangement=meant(children[0]))
