@@ -193,8 +193,9 @@ def _unlike(demand: Demand, tied: Sequence[Clause], plan: Plan) -> str:
         return why
     if demand.kind == "state":
         return counted_short(plan, demand, asked)
+    started = demand.base in CAUSES and any(field in STARTS for clause in tied for _, field in clause.things)
     return (
-        outsiders(plan, demand, asked)
+        ("" if started else outsiders(plan, demand, asked))
         or counted_short(plan, demand, asked)
         or wrong_way(plan, demand, asked, tied)
         or stays_there(plan, demand)

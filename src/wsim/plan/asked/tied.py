@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from wsim.plan.asked.demands import REQUIRED, Demand, demands
+from wsim.plan.asked.doers import outsiders
 from wsim.plan.asked.often import asks_often
 from wsim.plan.asked.shown import SHOWN_BY, shows, shows_not
 from wsim.plan.asked.stated import FIELDS, asks, asks_by_then, close, states, values
@@ -54,6 +55,8 @@ def _evidence(plan: Plan, demand: Demand) -> Iterator[int | str]:
     if base in _STATES:  # that the water stays in its tank is not that something lies there
         fluids = {item.name for item in plan.objects if item.state == "fluid"}
         numbers = [k for k in numbers if plan.objectives[k].object not in fluids]
+    if demand.kind == "verb":  # what is asked of others than it is said of shows nothing
+        numbers = [k for k in numbers if not outsiders(plan, demand, [plan.objectives[k]], some=True)]
     yield from numbers
     if not numbers and demand.base in CAUSES:
         for item in plan.objects:
