@@ -294,6 +294,17 @@ def test_they_are_what_is_several():
         ("A ball stands to the right of a box and rolls to the left.", "a box"),
         ("A cube slides for 2 seconds at 20 m/s.", "2 s"),
         ("A ball rolls down a ramp to the left.", "to the left"),
+        ("A box with a mug on it is pushed to the left.", "a mug"),
+        ("A ball falls on a ramp, rolls down and hits a wall.", "a ball"),
+        ("A block slides on ice and hits two balls.", "two balls"),
+        ("A pillar topples onto a box.", "onto a box"),
+        ("A steel ball sinks and then a cork floats.", "then a cork"),
+        ("A ball rolls down a ramp and hits a box that lies on a table.", "a ball"),
+        ("A cube that lies on a ramp is hit by a ball.", "a ball"),
+        ("Four blocks are stacked on a table and four on the ground.", "four"),
+        ("A ball next to a box is pushed to the right.", "a box"),
+        ("There is a ramp. A ball rolls down it. At its end there is a box.", "at its end"),
+        ("A ball falls onto the ground and rolls to the left.", "a ball"),
     ],
 )
 def test_what_would_be_lost_is_refused_by_its_words(sentence, words):
@@ -399,3 +410,14 @@ def test_what_falls_then_is_let_go_later():
     made = plan("A red ball drops and then a blue ball drops.")
     (release,) = made.schedules
     assert release.of == "blue_ball_held" and release.times == (1.0,)
+
+
+def test_what_comes_of_a_motion_is_no_name_alone():
+    made = plan("A ball bounces to 36 % of its height and then rests.")
+    assert [clause.by for clause in made.clauses if clause.words == "rests"] == [None]
+
+
+def test_a_verb_of_two_is_tied_to_what_is_asked_of_each():
+    made = plan("A heavy and a light ball drop from 1 m.")
+    (clause,) = (clause for clause in made.clauses if clause.words == "drop")
+    assert {made.objectives[k].object for k in clause.objectives} == {"ball", "ball_1"}

@@ -14,6 +14,7 @@ from wsim.plan.layout.bodies import around
 from wsim.plan.layout.boxes import Box
 from wsim.plan.schema import Objective, Plan, PlanObject
 from wsim.rules.cast import Cast, Thing
+from wsim.rules.lexicon import lexicon
 from wsim.rules.places import SIDES
 from wsim.rules.scenes.part import DIRECTIONS
 from wsim.rules.tokens import NotUnderstood
@@ -89,9 +90,17 @@ def _met(thing: Thing, own: list[PlanObject], plan: Plan, names: Names) -> list[
             named & theirs and (falls or named & {item.name for item in own})
             for named in (_involved(each) for each in plan.objectives)
         )
-        if other is not None and not asked:
+        several = other is not None and other is thing.target and other.count > 1 and not _is_one(other)
+        each = not several or theirs <= {name for one in plan.objectives for name in _involved(one)}
+        if other is not None and not (asked and each):
             found.append(f"into {other.words}")
     return found
+
+
+def _is_one(thing: Thing) -> bool:
+    """Whether several are spoken of as one, such as a row."""
+    groups = {word for words, entry in lexicon().entries.items() if entry.terminal == "GROUP" for word in words}
+    return bool(groups & {*thing.words.split()})
 
 
 def _involved(objective: Objective) -> set[str]:

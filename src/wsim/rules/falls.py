@@ -13,6 +13,7 @@ from wsim.rules.places import common, do, put, put_inside, refuse_afloat, stand,
 from wsim.rules.reader import Reader
 from wsim.rules.tokens import NOT_IN_THIS_ORDER, NotUnderstood
 
+_LET_GO = {"let", "released"}  # of which one word is in what is said of what starts from rest where it is
 _INTO = ("in", "into", "inside", "on", "onto", "to", "at", "against")
 
 
@@ -28,6 +29,9 @@ def topple(reader: Reader, thing: Thing, action: Action) -> None:
         raise NotUnderstood([action.words], "lets a stack, a row or a body topple, but not this:")
     for place in action.places:
         if not common(reader, thing, place):
+            ground = place.phrase is not None and where(reader, place.phrase, thing) == "ground"
+            if place.preposition not in ("on", "in", "at") and not ground:
+                raise NotUnderstood([action.words], "lets things fall over, but not at or onto others:")
             _land(reader, thing, action, place)
     if not thing.group and thing.count > 1:
         reader.cast.assume(thing.words, "in a row", "the prompt does not say how they stand")
@@ -77,7 +81,7 @@ def fall(reader: Reader, thing: Thing, action: Action) -> None:
             thing.does.remove("drop")
         elif place.preposition == "from":
             raise NotUnderstood([action.words], "needs a height after 'from', as in 'from 0.5 m':")
-        elif place.preposition == "on" and place.phrase is not None and _on_ramp(reader, thing, place):
+        elif place.preposition == "on" and _LET_GO & {*action.words.split()} and _on_ramp(reader, thing, place):
             thing.does.remove("drop")
         elif not common(reader, thing, place):
             _land(reader, thing, action, place)

@@ -20,9 +20,10 @@ def later(reader: Reader, clause: Clause, things: list[Thing], before: dict[int,
     for thing in things:
         did = before.get(id(thing), [])
         new = [what for what in thing.does if what not in did]
+        starts = _GOING if id(thing) in before else _GOING | {"float", "sink", "submerge"}
         met = any(thing in (one.target, one.support, one.meets) for one in reader.cast.things)
         if "drop" in new and not _GOING & {*did} and thing.delay is None:
             thing.delay = THEN
             reader.cast.assume(thing.words, f"let go after {THEN:g} s", "the prompt says then, not when")
-        elif _GOING & {*new} and not _GOING & {*did} and not met and thing.delay is None:
+        elif starts & {*new} and not _GOING & {*did} and not met and thing.delay is None:
             raise NotUnderstood([f"then {clause.words}"], "starts what moves at once; say 'after two seconds', not")

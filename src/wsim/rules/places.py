@@ -52,6 +52,8 @@ def _stand_at(reader: Reader, thing: Thing, place: Place, at: Phrase) -> None:
         if at.kind == "pronoun" and (found.round or found.rod is not None):
             # Nothing stands on a ball, or on what hangs: it is what that is on, or above.
             found = found.path or found.support or found
+        if part(at) in ("end", "bottom", "edge") and found.noun.family == "ramp":
+            raise NotUnderstood([place.words], "stands things on a ramp, at its top, but not there:")
         if part(at) == "middle" and found.noun.family == "turntable":
             thing.side = "middle"
         inside = place.preposition in ("in", "inside", "into")

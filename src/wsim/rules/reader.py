@@ -236,6 +236,8 @@ class Reader:
             found = _described(among, phrase)
         if not found or (phrase.choice in ("nth", "some") and len(found) < count and not found[0].group):
             raise NotUnderstood([phrase.words], "cannot tell which of what was spoken of this is")
+        if phrase.choice == "some" and found[0].group:
+            raise NotUnderstood([phrase.words], "cannot part a stack or a row, of which some would do this:")
         self.chosen += found
         if phrase.choice == "some":
             self.partly.append((found, [thing for thing in among if thing not in found]))

@@ -13,6 +13,7 @@ from wsim.rules.tokens import as_read
 
 Names = dict[int, list[str]]
 OF_OTHERS = "no objective of the plan asks for it of what it is said of"
+_MOTIONS = ("drop", "fall", "bounce", "roll", "slide", "throw", "fly", "swing", "push", "hit", "collide", "topple")
 _OF_WATER = ("fill", "hold", "contain")  # what a tank is said to be amid what others do
 # Behind what is done, and before whom it is done to.
 _AT = ("into", "against", "with", "at", "to", "towards", "onto", "on", "by", "in", "over", "before")
@@ -46,11 +47,33 @@ def _own(clause: Clause, demand: Demand, plan: Plan, cast: Cast, names: Names) -
         return clause
     known = {item.name for item in plan.objects}
     kept: list[int | str] = [each for each in clause.by if _is_of(each, who, known, plan)]
-    if kept:
-        return Clause(words=clause.words, by=kept)
-    if demand.kind == "state":
+    ends = demand.kind == "state" and _comes_to_be(at, cast)
+    if any(isinstance(each, int) for each in kept) or (kept and not ends):
+        return Clause(words=clause.words, by=_of_each(kept, who, plan))
+    if demand.kind == "state" and not ends:
         return Clause(words=clause.words, by=sorted(who))
     return Clause(words=clause.words, unchecked=OF_OTHERS)
+
+
+def _of_each(kept: list[int | str], who: set[str], plan: Plan) -> list[int | str]:
+    """Of several who do the same, what is asked of each."""
+    alike = {_what(plan.objectives[each]) for each in kept if isinstance(each, int)}
+    every = [k for k, one in enumerate(plan.objectives) if one.object in who and _what(one) in alike]
+    return [
+        *sorted({*every, *(each for each in kept if isinstance(each, int))}),
+        *(e for e in kept if isinstance(e, str)),
+    ]
+
+
+def _what(objective: Objective) -> tuple[str, str]:
+    return objective.kind, str(getattr(objective.formula, "op", ""))
+
+
+def _comes_to_be(at: int, cast: Cast) -> bool:
+    """Whether what is said at a place of the prompt is what comes of a motion that was spoken of before."""
+    here = [thing for thing, action in cast.said if action.at[0] <= at < action.at[1] and not action.relative]
+    before = [(thing, action) for thing, action in cast.said if action.at[1] <= at and action.verb in _MOTIONS]
+    return any(thing is one for thing in here for one, _ in before)
 
 
 def _is_of(each: int | str, who: set[str], known: set[str], plan: Plan) -> bool:

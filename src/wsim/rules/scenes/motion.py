@@ -385,5 +385,12 @@ def top(name: str, part: Part) -> float:
 
 
 def item_of(name: str, part: Part) -> PlanObject:
-    """An object of a part, by its name."""
-    return next(item for item in part.objects if item.name == name)
+    """An object of a part, by its name.
+
+    Raises:
+        UserError: It has a pose of its own, as what hangs or is on a ramp has, which is where no rule looks for it.
+    """
+    found = next((item for item in part.objects if item.name == name), None)
+    if found is None:
+        raise UserError(f"{name!r}: the builtin planner lets things hit or carry what stands on the level, not this")
+    return found
