@@ -24,7 +24,7 @@ def listed(first: str, last: str) -> list[str]:
 
 BODIES = listed("block, box", "plant, lamp")
 STILL = [word.split(" (")[0] for word in listed("table, desk", "wall, ramp")]
-VESSELS = listed("tank, aquarium", "bucket, bowl, bin")
+VESSELS = listed("tank, aquarium", "bucket, bowl, pot, bin")
 HINGED = ["pendulum", "seesaw"]
 MATERIALS = [*listed("wood, pine", "steel"), *listed("iron, aluminium", "glass")]
 COLOURS = listed("red, green", "black, grey")

@@ -116,14 +116,15 @@ def _beside(thing: Thing, own: list[PlanObject], plan: Plan, names: Names) -> li
             continue
         axis, sign = (1, 1.0) if one.predicate == "LEFT-OF" else (1, -1.0) if one.predicate == "RIGHT-OF" else (0, 1.0)
         sign = -1.0 if one.predicate == "BACK-OF" else sign
-        mine, others = around(own[0]), [around(plan.object(name)) for name in names[id(one.ref)]]
-        gaps = [box_gap(mine, other, axis, sign) for other in others]
-        if min(gaps) < -CLOSE or (one.gap is not None and not any(abs(gap - one.gap) <= CLOSE for gap in gaps)):
-            found.append(f"beside {one.ref.words}")
+        others = [around(plan.object(name)) for name in names[id(one.ref)]]
+        for item in own if thing.arrangement != "row" else own[:1]:
+            gaps = [_gap(around(item), other, axis, sign) for other in others]
+            if min(gaps) < -CLOSE or (one.gap is not None and not any(abs(gap - one.gap) <= CLOSE for gap in gaps)):
+                found.append(f"beside {one.ref.words}")
     return found
 
 
-def box_gap(box: Box, other: Box, axis: int, sign: float) -> float:
+def _gap(box: Box, other: Box, axis: int, sign: float) -> float:
     """How far a box is from another, along an axis, on the side that the sign says [m]; below 0 on the other side."""
     return box.low[axis] - other.high[axis] if sign > 0.0 else other.low[axis] - box.high[axis]
 

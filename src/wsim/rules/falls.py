@@ -98,7 +98,13 @@ def _on_ramp(reader: Reader, thing: Thing, place: Place) -> bool:
 
 
 def _let_go(reader: Reader, thing: Thing, action: Action) -> None:
-    """A pendulum that is let go swings."""
+    """A pendulum that is let go swings.
+
+    Raises:
+        NotUnderstood: It is to drop, which its rod or rope does not let it.
+    """
+    if not _LET_GO & {*action.words.split()} and not any(place.preposition == "angle" for place in action.places):
+        raise NotUnderstood([action.words], "lets what hangs swing, or be let go, but not fall:")
     for place in action.places:
         if place.preposition == "angle":
             thing.angle = place.value

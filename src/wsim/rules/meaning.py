@@ -276,7 +276,8 @@ def _say(reader: Reader, phrase: Phrase, subjects: list[Thing]) -> None:
         return
     if reader.is_scenery(phrase):
         raise NotUnderstood([phrase.words], "lets blocks and balls act, but not a tank, water or the ground")
-    thing = reader.thing(phrase) if phrase.kind != "group" or phrase.members is not None else None
+    named = phrase.kind != "pronoun" and (phrase.kind != "group" or phrase.members is not None)
+    thing = reader.thing(phrase) if named else None  # "a ball on it that rolls off": the ball does
     for said in phrase.clauses:
         stands = said.verb == "rest" and any(place.phrase is not None for place in said.places)
         own = thing is not None and (thing.noun.family in _ACTS or stands or said.verb in ("run", "move", "tilt"))

@@ -203,6 +203,8 @@ def _furniture(thing: Thing) -> bool:
 
 def _above(reader: Reader, thing: Thing, place: Place, other: str | Thing) -> None:
     """Above a thing is where a fall begins."""
+    if isinstance(other, Thing) and thing.support not in (None, other):
+        raise NotUnderstood([place.words], "drops what is above a thing, and this stands on another:")
     if place.length is not None:
         thing.drop_height = place.length
     elif thing.drop_height is None and not isinstance(other, Thing):

@@ -25,6 +25,7 @@ class Reader:
         self.spoken: list[Thing] = []  # among which "the first" or "the other" chooses
         self.chosen: list[Thing] = []  # by the choices so far
         self.earlier: list[tuple[list[Thing], list[Thing]]] = []  # those two, before what "with" has named
+        self.told: set[str] = set()  # the kinds of which all were spoken of, before any was named
         self.partly: list[tuple[list[Thing], list[Thing]]] = []  # some of several, and the others
         self.named: dict[int, Thing] = {}  # what a phrase was found to name, by identity
         self.singles: dict[int, list[Thing]] = {}  # what a thing that was several has become, by identity
@@ -99,6 +100,13 @@ class Reader:
     def subjects(self, phrase: Phrase, actions: list[Action]) -> list[Thing]:
         """The things that a clause is about."""
         found = self._subjects(phrase, actions)
+        if (
+            phrase.owner is not None
+            and phrase.choice == "all"
+            and id(phrase.owner) in self.named
+            and phrase.owner.definite
+        ):
+            self.told.add(phrase.owner.kind)
         self.cast.named += [(thing, phrase) for thing in found]
         return found
 
@@ -168,6 +176,10 @@ class Reader:
                 raise NotUnderstood([phrase.words], "cannot tell which of them this is")
             if known:
                 return known[0]
+        if phrase.kind in self.told:
+            raise NotUnderstood([phrase.words], "takes what all do for what was named before, and so not for this:")
+        if phrase.kind == "pronoun":
+            raise NotUnderstood([phrase.words], "cannot tell what this stands for")
         if phrase.kind in ("things", "one"):
             raise NotUnderstood([phrase.words], "needs to be told, after a colon, what this is")
         described = phrase
@@ -252,7 +264,10 @@ class Reader:
         else:
             among = self.spoken
         if phrase.members is not None:
-            among = [one for one in self.cast.things if one.kind == phrase.members.kind] or [self.thing(phrase.members)]
+            among = [one for one in self.cast.things if one.kind == phrase.members.kind]
+            if not among:
+                among = [self.thing(phrase.members)]
+                self.told.add(phrase.members.kind)
         among = [now for one in among for now in self.now(one)]
         whole = phrase.choice == "all"
         found: list[Thing] = []

@@ -252,6 +252,9 @@ def _in_plane(thing: Thing, made: list[PlanObject], index: int, part: Part, ends
     if any(beside.predicate == "under" for beside in thing.beside):
         return []
     sides = _sides(thing) if index == 0 else []
+    if _sides(thing) and index:  # several behind a thing: next to each other
+        across = {"FRONT-OF": "LEFT-OF", "BACK-OF": "LEFT-OF"}.get(_sides(thing)[0].predicate, "FRONT-OF")
+        return [Relation(predicate=across, ref=made[index - 1].name, gap=GAP if thing.support is None else GAP_ABOVE)]
     if not sides:
         # On the middle of what carries it, unless something is there already.
         juts = _juts(thing, item, cast)
