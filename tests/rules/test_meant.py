@@ -305,6 +305,11 @@ def test_they_are_what_is_several():
         ("A ball next to a box is pushed to the right.", "a box"),
         ("There is a ramp. A ball rolls down it. At its end there is a box.", "at its end"),
         ("A ball falls onto the ground and rolls to the left.", "a ball"),
+        ("A heavy ball knocks over the 2 kg platform.", "platform"),
+        ("All of the balls sink: three balls are dropped into a tank.", "three balls"),
+        ("A mug stands on a shelf above a table.", "above a table"),
+        ("A ball drops on a platform that stands on a table.", "platform"),
+        ("Two small balls on a rope drop.", "drop"),
     ],
 )
 def test_what_would_be_lost_is_refused_by_its_words(sentence, words):

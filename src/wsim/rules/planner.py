@@ -15,6 +15,7 @@ import re
 from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.asked.tied import tied
+from wsim.plan.feasible.plan import refuse_impossible
 from wsim.plan.layout import layout
 from wsim.plan.layout.bodies import around
 from wsim.plan.layout.land import set_down
@@ -90,6 +91,7 @@ def plan(prompt: str) -> Plan:
         )
     )
     check_built(made, cast, scene.names)
+    refuse_impossible(made, "the builtin planner's plan of this")
     return tied_to(made, cast, scene.names)
 
 

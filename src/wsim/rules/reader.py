@@ -100,13 +100,9 @@ class Reader:
     def subjects(self, phrase: Phrase, actions: list[Action]) -> list[Thing]:
         """The things that a clause is about."""
         found = self._subjects(phrase, actions)
-        if (
-            phrase.owner is not None
-            and phrase.choice == "all"
-            and id(phrase.owner) in self.named
-            and phrase.owner.definite
-        ):
-            self.told.add(phrase.owner.kind)
+        owner = self.named.get(id(phrase.owner)) if phrase.choice == "all" else None
+        if owner is not None and owner.phrase is phrase.owner and owner.phrase.definite:  # named by this alone
+            self.told.add(owner.kind)
         self.cast.named += [(thing, phrase) for thing in found]
         return found
 
