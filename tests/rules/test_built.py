@@ -98,7 +98,7 @@ def involved(objective):
     return found | (set() if objective.formula is None else set(objective.formula.names()))
 
 
-@settings(max_examples=80, deadline=None, derandomize=True)
+@settings(max_examples=50, deadline=None, derandomize=True)
 @given(sentences())
 def test_a_drawn_sentence_is_planned_as_it_says_or_refused(said):
     try:

@@ -87,7 +87,11 @@ def named(error: UserError) -> set[str]:
 
 def test_the_words_are_found():
     assert (BODIES[0], BODIES[-1], len(BODIES)) == ("block", "lamp", 27)
-    assert (STILL[-1], VESSELS, MATERIALS[-1]) == ("ramp", ["tank", "aquarium", "bucket", "bowl", "bin"], "glass")
+    assert (STILL[-1], VESSELS, MATERIALS[-1]) == (
+        "ramp",
+        ["tank", "aquarium", "bucket", "bowl", "pot", "bin"],
+        "glass",
+    )
     assert "to the left of" in PLACES and "huge" in SIZES and "grey" in COLOURS
 
 
