@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from wsim.judge import judge
+from wsim.judge.books.recorded import RecordedContacts
 from wsim.recording import read
 from wsim.scene import Drive, Event, Scene
 from wsim.scene.describe import describe
@@ -144,3 +145,23 @@ def test_an_effort_that_jumps_between_steps_of_the_fourth_order_is_not_missed(tm
     assert verdict.status == "accepted", [(f.check, f.message) for f in verdict.failures]
     if times == (0.2,):
         assert recording.body_qd[-1, 0, 0] == pytest.approx(10.0 / 2.0 * 0.3, rel=1e-5)
+
+
+@pytest.mark.parametrize("spread", [True, False])
+def test_a_landing_within_a_frame_has_the_friction_of_its_instant(spread, tmp_path, monkeypatch):
+    """What presses while friction runs from 0.5 to nought rubs with that of then: the frame's mean is another."""
+
+    def lands(scene):
+        for k in range(6):
+            at = (-4, 2 * k, 0.06 + 0.04 * k)
+            scene.box(
+                f"sled_{k}", size=(0.3, 0.2, 0.1), mass=3, position=at, velocity=(3, 0, 0), rotation_deg=(0, 4, 0)
+            )
+            scene.contact(f"sled_{k}", "ground", friction=0.5)
+            scene.schedule(f"thaw_{k}", (f"sled_{k}", "ground"), "friction", times=[0.0, 0.4], values=[0.5, 0.02],
+                           linear=True)  # fmt: skip
+
+    if not spread:
+        monkeypatch.setattr(RecordedContacts, "spread", 0.0)
+    verdict = judge(recorded(tmp_path, lands)[1])
+    assert (verdict.status == "accepted") == spread, [(f.check, f.message) for f in verdict.failures]

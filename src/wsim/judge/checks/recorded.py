@@ -95,17 +95,15 @@ class CheckRecordedForces(Check):
         pressed = contacts.track.pressed.astype(np.float64)
         unit = np.maximum(np.abs(pressed), 1e-30)
         turned = np.linalg.norm(contacts.track.along.astype(np.float64), axis=1) - pressed
-        over = (
-            np.maximum(contacts.rubbed - (contacts.friction + contacts.spread) * pressed, np.maximum(turned, -pressed))
-            / unit
-        )
+        most = contacts.friction + contacts.spread
+        over = np.maximum(contacts.rubbed - most * pressed, np.maximum(turned, -pressed)) / unit
         k = int(np.argmax(over))
         return self._of_row(
             evidence, contacts, k,
             f"rub with {contacts.rubbed[k] / unit[k]:.3g} of what they press; their friction is "
             f"{contacts.friction[k]:.3g}",
             float(contacts.rubbed[k] / unit[k] if pressed[k] > 0.0 else np.inf),
-            float(contacts.friction[k] + contacts.spread[k] + self.cone), "1",
+            float(most[k] + self.cone), "1",
             "Every recorded contact pushes, and rubs inside its friction's cone",
             f"the pair's friction, and {self.cone:g} for the solver",
         )  # fmt: skip

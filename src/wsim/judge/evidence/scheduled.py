@@ -97,7 +97,9 @@ class Aims:
                 even[what] = ByTime.of(evidence, own[what], (value,))
                 jumps |= even[what].jumps & (what in OF_DRIVES)
             else:
-                even[what] = ByTime(np.full((frames, 1), value), np.full((len(jumps), 1), value), jumps)
+                even[what] = ByTime(
+                    np.full((frames, 1), value), np.full((len(jumps), 1), value), np.zeros((len(jumps), 1)), jumps
+                )
         position, velocity = even["position"], even["velocity"]
         return Aims(position.at[:, 0], velocity.at[:, 0], position.means[:, 0], velocity.means[:, 0],
                     even["effort"].means[:, 0], jumps, bool(set(own) & set(stated)))  # fmt: skip
