@@ -137,6 +137,13 @@ def test_glass_dims_by_its_thickness_and_leaves_the_shape_index() -> None:
     assert ratio == pytest.approx(expected, rel=0.03)
 
 
+def test_ground_of_ice_is_drawn_as_ground() -> None:
+    """A plane has no thickness to look through."""
+    plane = Shape(prim="/World/ground/geometry", kind="plane", size=(), color=(0.7, 0.8, 0.9), opacity=0.6)
+    image = draw(World(statics=[Static(prim="/World/ground", shapes=[plane])], cameras=[look_down(3.0)]))
+    assert np.all(image.shape_index == 0)
+
+
 @pytest.mark.parametrize("kind", ["sphere", "cylinder"])
 def test_round_glass_absorbs_along_its_chord(kind: str) -> None:
     size = (0.4,) if kind == "sphere" else (0.4, 0.8)

@@ -102,7 +102,8 @@ def shape_looks(model: Any, world: World, world_index: int) -> ShapeLooks:
     for index, shape, ground in shapes_by_label(model, world, world_index):
         looks.color[index] = srgb_of(shape.color)
         looks.ground[index] = int(ground)
-        if shape.opacity < OPAQUE and index not in looks.hidden:
+        # A plane has no thickness to look through, and nothing below it: a field of ice is drawn as ground.
+        if shape.opacity < OPAQUE and shape.kind != "plane" and index not in looks.hidden:
             looks.hidden.append(index)
             if flags[index] & int(newton.ShapeFlags.VISIBLE):
                 looks.panes.append(Pane.of(model, index, shape))

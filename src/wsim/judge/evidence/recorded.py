@@ -13,6 +13,7 @@ import numpy as np
 from wsim.geometry.rotations import mean_rotation, upwards
 from wsim.geometry.shapes import Solid
 from wsim.judge.evidence.containment import Containment, local
+from wsim.judge.evidence.final_window import final_window
 from wsim.judge.evidence.placed import as_parts, placed_shapes, placed_together
 from wsim.judge.evidence.stacked import Stacked, stacked
 from wsim.scene.world import Shape
@@ -26,10 +27,6 @@ if TYPE_CHECKING:
     from wsim.scene.world import Body, Container, Fluid, Static, World
 
     Floats = NDArray[np.float64]
-
-WINDOW = 1.0  # means are taken over the last second [s],
-WINDOW_SHARE = 0.25  # or this share of a longer run,
-WINDOW_MOST = 0.5  # but never over more than this share
 
 
 class MissingError(LookupError):
@@ -77,7 +74,7 @@ class Recorded:
         """When the final window begins [s]."""
         first, last = float(self.time[0]), float(self.time[-1])
         span = last - first
-        return last - min(max(WINDOW, WINDOW_SHARE * span), WINDOW_MOST * span)
+        return last - final_window(span)
 
     @cached_property
     def window(self) -> NDArray[np.bool_]:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsim.judge.evidence.recorded import WINDOW, WINDOW_MOST, WINDOW_SHARE, MissingError
+from wsim.judge.evidence.final_window import final_window
+from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language import (
     measures_carried,
     measures_contact,
@@ -267,8 +268,3 @@ def frames_of(mean: Mean, time: Floats) -> tuple[int, int]:
         return first_of_last(time, mean.seconds), len(time)
     low, high = span_of(time, len(time), mean.window)
     return int(low[0]), int(high[0])
-
-
-def final_window(span: float) -> float:
-    """The length of the judge's final window in a recording of a span [s], as `Evidence.window_start` has it."""
-    return min(max(WINDOW, WINDOW_SHARE * span), WINDOW_MOST * span)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.shapes import kind_of
+from wsim.judge.evidence.final_window import span_for
 from wsim.judge.repair.drive import by_drive, drive_of
 from wsim.judge.repair.matter import damped
 from wsim.judge.repair.rule import FARTHEST, ROOM, add_collision, collides, longer_run, shorter_step
@@ -32,6 +33,13 @@ def settled(finding: Finding, evidence: Evidence) -> RepairTarget:
     i = evidence.index(prim)
     speed = np.linalg.norm(evidence.body_qd[:, i, :3], axis=1)
     end = float(evidence.time[-1])
+    stands = np.flatnonzero(speed > (finding.limit or 0.0))[-1] + 1 if np.any(speed > (finding.limit or 0.0)) else 0
+    if finding.limit and stands < len(speed):  # it does come to rest, and the final window begins before
+        wanted = (1.0 + ROOM / 2) * span_for(float(evidence.time[stands] - evidence.time[0]))
+        if wanted > end - float(evidence.time[0]):
+            return longer_run(
+                evidence, wanted, f"it stands from {evidence.time[stands]:.3g} s on: that is to be long enough"
+            )
     half = min(1.0, 0.25 * (end - float(evidence.time[0])))
     late = evidence.time > end - half
     early = (evidence.time > end - 2 * half) & ~late

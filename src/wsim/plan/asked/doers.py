@@ -9,6 +9,7 @@ from wsim.plan.asked import vocabulary as words
 from wsim.plan.asked.demands import demands
 from wsim.plan.asked.numbers import numbers
 from wsim.plan.asked.parties import Mentions, Names, before, involved, mentions, said_of, whole_of
+from wsim.plan.asked.shown import BY_ITSELF
 from wsim.plan.asked.tokens import Words, text_at
 from wsim.plan.schema.formula import VOCABULARY
 
@@ -24,7 +25,7 @@ _IT = words.as_set("it them itself themselves each one another him her")
 _FEW = 3  # words between what counts and the noun: "three of the small red balls"
 
 
-def outsiders(plan: Plan, demand: Demand, objectives: Sequence[Objective]) -> str:
+def outsiders(plan: Plan, demand: Demand, objectives: Sequence[Objective], some: bool = False) -> str:
     """Why a verb's objectives are not about those that it is said of, or about some of them alone; else empty.
 
     Where it is not known of whom it is said, or an objective is about many at a time, nothing is.
@@ -33,25 +34,57 @@ def outsiders(plan: Plan, demand: Demand, objectives: Sequence[Objective]) -> st
         plan: The plan.
         demand: The verb.
         objectives: Those that clauses name for it.
+        some: Whether they may be about some of those alone.
     """
     read = Words.of(plan.prompt)
     named = mentions(read, plan)
     verbs = {each.first for each in demands(plan.prompt) if each.kind in ("verb", "state", "beyond")}
-    does = before(read, named, verbs, demand.first) if _is_subject_known(read, named, demand.first) else ()
-    does = tuple(names for names in does if _are_named_so(read, names))
+    does = doers(plan, demand)
     about = [involved(each, plan) for each in objectives]
     known = [names for names in about if names is not None]
     if not does or not known or len(known) < len(about) or _is_object_unknown(read, named, demand.first + 1):
         return ""
-    party = frozenset().union(*does, *_around(read, named, verbs, demand.first))
+    party = frozenset().union(*does, *_around(read, named, verbs, demand))
     if not any(names & whole_of(plan, party) for names in known):
         asked = "; ".join(" and ".join(sorted(names)) for names in known)
         return f"it is said of {said_of(does[0])}, and the objectives that are named for it are about {asked}"
-    for names in does:
+    for names in () if some else does:
         left = [one for one in sorted(names) if not any(each & whole_of(plan, frozenset((one,))) for each in known)]
         if left and _is_of_all(read, named, names, demand):
             return f"it is said of all of {', '.join(sorted(names))}, and nothing that is named for it is of {left[0]}"
     return ""
+
+
+def doers(plan: Plan, demand: Demand) -> tuple[Names, ...]:
+    """Of whom a verb is said, each of several as the names of the things that it may be; empty where it is not known.
+
+    Args:
+        plan: The plan.
+        demand: The verb.
+    """
+    read = Words.of(plan.prompt)
+    named = mentions(read, plan)
+    verbs = {each.first for each in demands(plan.prompt) if each.kind in ("verb", "state", "beyond")}
+    if not _is_subject_known(read, named, demand.first):
+        return ()
+    return tuple(names for names in before(read, named, verbs, demand.first) if _are_named_so(read, names))
+
+
+def is_of(plan: Plan, number: Demand, name: str) -> bool:
+    """Whether a number may be a thing's: "a box of 3 kg", "a 3 kg box", "the box weighs 3 kg" is of no other.
+
+    Args:
+        plan: The plan.
+        number: Of its prompt.
+        name: Of a thing, a joint or a schedule.
+    """
+    read = Words.of(plan.prompt)
+    named = mentions(read, plan)
+    k = number.first
+    of = [names for end, (begin, names) in named.items() if (end == k - 2 and read.said[k - 1].text in ("of", "weighs"))
+          or (begin == number.last + 1 and begin not in read.breaks)]  # fmt: skip
+    meant = of[0] if len(of) == 1 and _are_named_so(read, of[0]) else frozenset()
+    return not meant or name not in {item.name for item in plan.objects} or name in whole_of(plan, meant)
 
 
 def counted_short(plan: Plan, demand: Demand, objectives: Sequence[Objective]) -> str:
@@ -89,11 +122,16 @@ def _is_object_unknown(read: Words, named: Mentions, k: int) -> bool:
     return text_at(read.said, k) in words.DETERMINERS and behind not in begins
 
 
-def _around(read: Words, named: Mentions, verbs: set[int], k: int) -> list[Names]:
-    """The things right before a verb, and those behind it up to the next one."""
+def _around(read: Words, named: Mentions, verbs: set[int], demand: Demand) -> list[Names]:
+    """The things right before a verb, and those behind it up to the next one; of what one does by itself the first.
+
+    A ball that drops on a box drops itself; a crane that drops a box drops that.
+    """
+    k = demand.first
     found = [names for end, (_, names) in named.items() if end == k - 1]
     for i in range(k + 1, len(read.said)):
-        if i in read.breaks or i in verbs:
+        by_itself = demand.base in BY_ITSELF and read.said[i].text in words.PREPOSITIONS
+        if i in read.breaks or i in verbs or by_itself:
             break
         found += [named[i][1]] if i in named else []
     return found

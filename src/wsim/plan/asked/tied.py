@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from wsim.plan.asked.demands import REQUIRED, Demand, demands
+from wsim.plan.asked.doers import outsiders
 from wsim.plan.asked.often import asks_often
 from wsim.plan.asked.shown import SHOWN_BY, shows, shows_not
 from wsim.plan.asked.stated import FIELDS, asks, asks_by_then, close, states, values
@@ -35,13 +36,14 @@ def tied(plan: Plan) -> Plan:
 
 
 def _clause(plan: Plan, demand: Demand) -> Clause:
-    by: list[int | str] = [] if demand.kind == "beyond" else list(_evidence(plan, demand))
+    by: list[int | str] = [] if demand.kind == "beyond" else list(evidence(plan, demand))
     if by:
         return Clause(words=demand.text, by=by)
     return Clause(words=demand.text, unchecked=UNFOUND if demand.kind == "number" else UNASKED)
 
 
-def _evidence(plan: Plan, demand: Demand) -> Iterator[int | str]:
+def evidence(plan: Plan, demand: Demand) -> Iterator[int | str]:
+    """What of a plan shows a demand of its prompt: objectives by number, things and their properties by name."""
     if demand.kind == "number":
         yield from _of_number(plan, demand)
         return
@@ -54,6 +56,8 @@ def _evidence(plan: Plan, demand: Demand) -> Iterator[int | str]:
     if base in _STATES:  # that the water stays in its tank is not that something lies there
         fluids = {item.name for item in plan.objects if item.state == "fluid"}
         numbers = [k for k in numbers if plan.objectives[k].object not in fluids]
+    if demand.kind == "verb":  # what is asked of others than it is said of shows nothing
+        numbers = [k for k in numbers if not outsiders(plan, demand, [plan.objectives[k]], some=True)]
     yield from numbers
     if not numbers and demand.base in CAUSES:
         for item in plan.objects:

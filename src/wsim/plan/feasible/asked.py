@@ -26,6 +26,7 @@ class Said:
         throughout: It is to hold all the time, from the start on.
         whole: And to the end.
         optional: It is one of several alternatives.
+        plain: Nothing says when: it is asked as its predicate by itself is, alone or in an "and".
         end: The latest time that it is asked at [s]; infinite where that is the end of the run.
     """
 
@@ -36,6 +37,7 @@ class Said:
     throughout: bool = False
     whole: bool = False
     optional: bool = False
+    plain: bool = True
     end: float = inf
 
     @property
@@ -82,6 +84,8 @@ def _of(node: Node, under: Said, at: float | None) -> Iterator[Said]:
         at: The latest time that it is asked at [s]; None where nothing says when.
     """
     op = str(getattr(node, "op", ""))
+    if op not in ("and", "not") and not isinstance(node, Predicate):
+        under = replace(under, plain=False)
     if isinstance(node, Predicate):
         under = replace(under, end=inf if at is None else at)
         fields = {name: getattr(node, name) for name in type(node).model_fields if name != "op"}

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from wsim.plan.feasible.asked import said
+from wsim.plan.feasible.freedom import holds
 from wsim.plan.layout.bodies import convex
 from wsim.plan.layout.boxes import Solid, rotation
 
@@ -26,7 +27,11 @@ def joint_faults(plan: Plan) -> Iterator[str]:
         child, parent = items.get(joint.child), items.get(joint.parent or "")
         if child is not None and parent is not None:
             yield from _off(number, joint, child, parent)
-    upright = {joint.child: joint for joint in plan.joints if _turns_upright(joint, items)}
+    upright = {
+        joint.child: joint
+        for joint in plan.joints
+        if joint.axis == "Z" and joint.kind == "hinge" and holds(plan, joint)
+    }
     held = {joint.child: joint for joint in plan.joints if _bears(joint, items)}
     for each in said(plan):
         if each.name == "weighs_on" and not each.denied and each.object in held:
@@ -47,12 +52,6 @@ def _bears(joint: Joint, items: dict[str, PlanObject]) -> bool:
     holder = items.get(joint.parent or "")
     stands = holder is None or holder.state == "static"
     return stands and joint.kind in ("hinge", "ball")
-
-
-def _turns_upright(joint: Joint, items: dict[str, PlanObject]) -> bool:
-    """Whether a body can do nothing but turn about the vertical: a hinge to what stands still."""
-    holder = items.get(joint.parent or "")
-    return joint.kind == "hinge" and joint.axis == "Z" and (holder is None or holder.state == "static")
 
 
 def _off(number: int, joint: Joint, child: PlanObject, parent: PlanObject) -> Iterator[str]:
