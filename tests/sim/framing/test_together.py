@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from tests.sim.framing.runs import ENOUGH, HEIGHT, WIDTH, a_camera, a_world, drawn, recorded
 from wsim.geometry.rotations import line_of_sight
 from wsim.scene.describe import describe
-from wsim.scene.world import Camera, Shape
+from wsim.scene.world import Camera
 from wsim.sim.framing.frame import Framing
 from wsim.sim.framing.motion import Motion
-from wsim.sim.framing.rooms import before_walls, free_way
+from wsim.sim.framing.rooms import Walls, before_walls
 from wsim.sim.framing.subjects import subjects
 
 LARGE = ENOUGH * 16  # of pictures of 640
@@ -124,16 +124,21 @@ def test_what_lies_behind_a_screen_and_nobody_asks_about_is_seen_too():
 
 def test_the_way_to_a_wall_ends_at_its_box():
     """A wall turned by 30 degrees about Z, its face 2 m off: along X it is 2 / cos(30) m to it; a pane is none."""
-    turned = (0.0, 0.0, math.sin(math.radians(15.0)), math.cos(math.radians(15.0)))
-    place = (2.1 * math.cos(math.radians(30.0)), 2.1 * math.sin(math.radians(30.0)), 0.0)
-    wall = Shape(prim="/World/wall", kind="box", size=(0.2, 9.0, 3.0), position=place, rotation=turned)
-    ahead = np.array((1.0, 0.0, 0.0))
-    assert free_way(np.zeros(3), ahead, [wall]) == pytest.approx(2.0 / math.cos(math.radians(30.0)))
-    assert free_way(np.zeros(3), -ahead, [wall]) == math.inf
-    assert free_way(np.zeros(3), ahead, [wall.model_copy(update={"opacity": 0.3})]) == math.inf
-    assert free_way(np.array((0.0, 0.0, 2.0)), ahead, [wall]) == math.inf  # above it
-    around = wall.model_copy(update={"size": (9.0, 9.0, 9.0)})
-    assert free_way(np.zeros(3), ahead, [around]) == math.inf  # of one piece, round the point
+
+    def free_way(start, way, size=(0.2, 9.0, 3.0), opacity=1.0):
+        scene = a_world()
+        place = (2.1 * math.cos(math.radians(30.0)), 2.1 * math.sin(math.radians(30.0)), 0.0)
+        scene.box("wall", size=size, position=place, rotation_deg=(0.0, 0.0, 30.0), static=True)
+        world = describe(scene.stage)
+        for static in world.statics:
+            static.shapes = [shape.model_copy(update={"opacity": opacity}) for shape in static.shapes]
+        return Walls.of(world).free_way(np.array(start), np.array(way))
+
+    assert free_way((0.0, 0.0, 0.0), (1.0, 0.0, 0.0)) == pytest.approx(2.0 / math.cos(math.radians(30.0)))
+    assert free_way((0.0, 0.0, 0.0), (-1.0, 0.0, 0.0)) == math.inf
+    assert free_way((0.0, 0.0, 2.0), (1.0, 0.0, 0.0)) == math.inf  # above it
+    assert free_way((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), opacity=0.3) == math.inf
+    assert free_way((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), size=(9.0, 9.0, 9.0)) == math.inf  # of one piece, round the point
 
 
 def test_a_lens_before_a_wall_has_the_points_in_frame():
@@ -142,8 +147,8 @@ def test_a_lens_before_a_wall_has_the_points_in_frame():
     world = describe(scene.stage)
     points = np.array([(x, y, z) for x in (-0.6, 0.6) for y in (-0.1, 0.1) for z in (0.3, 0.7)])
     view = Camera(prim="/World/main", eye=(0.0, -3.0, 0.5), target=(0.0, 0.0, 0.5))
-    (nearer,) = before_walls(view, points, world)
+    (nearer,) = before_walls(view, points, Walls.of(world))
     assert -1.0 < nearer.eye[1] < -0.9
     assert inside(nearer, points).all()
     assert not inside(nearer.model_copy(update={"fov": view.fov}), points).all()
-    assert list(before_walls(view.model_copy(update={"eye": (0.0, -0.8, 0.5)}), points, world)) == []
+    assert list(before_walls(view.model_copy(update={"eye": (0.0, -0.8, 0.5)}), points, Walls.of(world))) == []

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from wsim.geometry.rotations import line_of_sight
 from wsim.scene.following import as_at_start
+from wsim.sim.framing.rooms import Walls
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -46,6 +48,11 @@ class Scenario:
     subjects: Sequence[Subject]
     weight: Array
     stills: Array
+
+    @cached_property
+    def walls(self) -> Walls:
+        """What stands between."""
+        return Walls.of(self.world)
 
     @property
     def shares(self) -> Array:

@@ -55,7 +55,7 @@ def views_of_all(camera: Camera, scenario: Scenario) -> Iterator[Camera]:
     for azimuth, elevation in [_side_of(camera), *_sides(scenario, steep=True)]:
         for points in (_corners(low, high), framed):
             view = fitted(points, azimuth, elevation, camera)
-            for each in (view, *before_walls(view, points, scenario.world)):
+            for each in (view, *before_walls(view, points, scenario.walls)):
                 if _above(each, ground, elevation):
                     yield each
 
@@ -86,7 +86,7 @@ def _from(camera: Camera, scenario: Scenario, around: Array, sides: Sequence[tup
     for azimuth, elevation in sides:
         stands = [fitted(points, azimuth, elevation, camera) for points in framed]
         within = [
-            v for view, points in zip(stands, framed, strict=True) for v in before_walls(view, points, scenario.world)
+            v for view, points in zip(stands, framed, strict=True) for v in before_walls(view, points, scenario.walls)
         ]
         goes = [
             fitted(points, azimuth, elevation, camera).model_copy(update={"follows": prim})
