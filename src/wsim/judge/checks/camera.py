@@ -14,7 +14,6 @@ from wsim.judge.language.kinds import formula_of
 from wsim.judge.language.objective import ObjectiveCheck, conjuncts
 from wsim.judge.verdict import RepairTarget
 from wsim.plan.schema.formula import Eventually, Predicate, Then
-from wsim.plan.subjects import asked_about
 from wsim.scene.labels import object_of
 
 if TYPE_CHECKING:
@@ -137,9 +136,9 @@ class CheckInFrame(Check):
 
 @dataclass
 class CheckSeen(Check):
-    """What moves, and what is asked about, is to be seen in some picture: not hidden in all, and not too small.
+    """What moves, and what the plan names, is to be seen in some picture: not hidden in all, and not too small.
 
-    Where nothing moves and nothing is asked, that is all there is. What only lies there may be behind something.
+    Where nothing moves and there is no plan, that is all there is. What only lies there may be behind something.
     A cable is one thing, part of which may run behind a post; so is what inner parts that meet nothing hold together,
     what is fixed to each other for good, and a cart with its wheels.
     """
@@ -197,7 +196,7 @@ class CheckSeen(Check):
 
 
 def _told_of(evidence: Evidence) -> list[list[Body]]:
-    """What moves or turns by a twentieth of its size, and what the plan's objectives name; where there is none, all."""
+    """What moves or turns by a twentieth of its size, and what the plan names; where there is none, all."""
     motion, things = evidence.motion, strands(evidence.world)
     if not len(evidence.time):
         return things
@@ -205,7 +204,7 @@ def _told_of(evidence: Evidence) -> list[list[Body]]:
     turned = 2.0 * np.arccos(np.clip(np.abs((motion.q[:, :, 3:] * motion.q[0, :, 3:]).sum(axis=2)), 0.0, 1.0))
     moves = ~((gone <= MOVES * motion.radius) & (turned.max(axis=0) <= MOVES))
     told = {body.prim for body, each in zip(evidence.world.bodies, moves, strict=True) if each}
-    asked = {evidence.prim(name) for name in asked_about(evidence.plan)} if evidence.plan is not None else set()
+    asked = {evidence.prim(item.name) for item in evidence.plan.objects} if evidence.plan is not None else set()
     found = [thing for thing in things if any(b.prim in told or object_of(b.prim) in asked for b in thing)]
     return found or things
 
