@@ -7,6 +7,7 @@ import pytest
 
 from wsim.recording import RecordingWriter, read
 from wsim.recording.contacts import WIDTH, Pushes
+from wsim.recording.solids import SolidParticles, Solids
 
 
 def test_impulse_and_work_come_back_bit_for_bit(world, make_frame, tmp_path):
@@ -34,7 +35,27 @@ def test_a_recording_without_them_has_none(world, make_frame, tmp_path):
     recording = read(tmp_path / "r.rrd")
     assert recording.applied_impulse is None and recording.applied_work is None and recording.seen == {}
     assert recording.applied_turn is None and recording.control_impulse is None and recording.wall_impulse is None
-    assert recording.contacts is None and recording.lead is None
+    assert recording.contacts is None and recording.lead is None and recording.solids is None
+
+
+def test_particles_of_solids_come_back_bit_for_bit(world, make_frame, tmp_path):
+    rng = np.random.default_rng(5)
+    walls, block = (
+        SolidParticles(rng.normal(size=(n, 3)).astype(np.float32), rng.random(n).astype(np.float32)) for n in (40, 7)
+    )
+    with RecordingWriter(tmp_path / "r.rrd", world) as writer:
+        with pytest.raises(ValueError, match="/World/nobody"):
+            writer.solids(Solids(walls, {"/World/nobody": block}))
+        writer.solids(Solids(walls, {"/World/block": block}))
+        writer.frame(0.0, make_frame(0))
+        writer.frame(0.1, make_frame(1))
+    solids = read(tmp_path / "r.rrd").solids
+    assert list(solids.bodies) == ["/World/block"]
+    for found, written in ((solids.walls, walls), (solids.bodies["/World/block"], block)):
+        assert found.position.tobytes() == written.position.tobytes()
+        assert found.volume.tobytes() == written.volume.tobytes()
+    with pytest.raises(ValueError, match=r"\(4, 3\) and \(5,\)"):
+        SolidParticles(np.zeros((4, 3)), np.zeros(5))
 
 
 def test_they_come_in_all_frames_or_in_none(world, make_frame, tmp_path):

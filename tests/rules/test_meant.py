@@ -271,3 +271,158 @@ def test_what_a_ball_rolls_along_is_the_table():
 def test_they_are_what_is_several():
     made = plan("A conveyor carries two boxes and they fall off its end.")
     assert all("collides_with" in kinds(made, name) for name in ("box_1", "box_2"))
+
+
+# ---- nothing is dropped
+@pytest.mark.parametrize(
+    ("sentence", "words"),
+    [
+        ("A ball rolls down a ramp 2 m long, off a table and into a bucket.", "a ball"),
+        ("A ball rolls down a ramp and off a table.", "a ball"),
+        ("A ball rolls off a ramp, off a table and into a bucket.", "a ball"),
+        ("A ball rolls off the table and lands behind a box.", "behind a box"),
+        ("A cube slides and stops behind a box.", "behind a box"),
+        ("A ball rolls under a table.", "under a table"),
+        ("A wooden plank floats on the water and a steel cube lies on it.", "on it"),
+        ("A ball hangs on a rope 1 m long and is hit by another ball.", "another ball"),
+        ("Three balls hang side by side from the ceiling; the first swings into the second.", "three balls"),
+        ("A cube with a ball on it slides down a ramp.", "a ball"),
+        ("A ball drops into a bucket that stands on a table, and then a cube.", "a cube"),
+        ("A ball rolls and a cube.", "a cube"),
+        ("A red ball rolls and then a blue ball rolls.", "then a blue ball"),
+        ("A ball drops into a box.", "into a box"),
+        ("A ball stands to the right of a box and rolls to the left.", "a box"),
+        ("A cube slides for 2 seconds at 20 m/s.", "2 s"),
+        ("A ball rolls down a ramp to the left.", "to the left"),
+        ("A box with a mug on it is pushed to the left.", "a mug"),
+        ("A ball falls on a ramp, rolls down and hits a wall.", "a ball"),
+        ("A block slides on ice and hits two balls.", "two balls"),
+        ("A pillar topples onto a box.", "onto a box"),
+        ("A steel ball sinks and then a cork floats.", "then a cork"),
+        ("A ball rolls down a ramp and hits a box that lies on a table.", "a ball"),
+        ("A cube that lies on a ramp is hit by a ball.", "a ball"),
+        ("Four blocks are stacked on a table and four on the ground.", "four"),
+        ("A ball next to a box is pushed to the right.", "a box"),
+        ("There is a ramp. A ball rolls down it. At its end there is a box.", "at its end"),
+        ("A ball falls onto the ground and rolls to the left.", "a ball"),
+        ("A heavy ball knocks over the 2 kg platform.", "platform"),
+        ("All of the balls sink: three balls are dropped into a tank.", "three balls"),
+        ("A mug stands on a shelf above a table.", "above a table"),
+        ("A ball drops on a platform that stands on a table.", "platform"),
+        ("Two small balls on a rope drop.", "drop"),
+    ],
+)
+def test_what_would_be_lost_is_refused_by_its_words(sentence, words):
+    with pytest.raises(UserError) as refused:
+        plan(sentence)
+    assert words in str(refused.value)
+    assert len(str(refused.value).splitlines()) <= 3
+
+
+@pytest.mark.parametrize(
+    ("sentence", "sinks", "floats"),
+    [
+        ("Only one of three balls sinks.", 1, 2),
+        ("Two of three blocks float on the water.", 1, 2),
+        ("Three boxes fall into a tank and two of them float.", 1, 2),
+        ("A tank of water with four balls; one of them sinks.", 1, 3),
+    ],
+)
+def test_the_others_do_the_other(sentence, sinks, floats):
+    made = plan(sentence)
+    asked = [o.kind for o in made.objectives if o.ref in ("tank", "water") and o.object != "water"]
+    assert asked.count("rests_on") == sinks and asked.count("floats") == floats
+    names = {o.object for o in made.objectives if o.kind == ("floats" if "float" in sentence else "rests_on")}
+    verb = next(clause for clause in made.clauses if clause.words in ("sinks", "float"))
+    assert {made.objectives[k].object for k in verb.objectives} == names
+
+
+@pytest.mark.parametrize("noun", ["ball rolls", "cube slides"])
+def test_what_goes_apart_starts_apart_and_is_asked_to(noun):
+    made = plan(f"A red {noun} to the left and a blue {noun} to the right.")
+    thing = noun.split()[0]
+    red, blue = made.object(f"red_{thing}"), made.object(f"blue_{thing}")
+    assert red.pose.position[1] > blue.pose.position[1] and red.velocity[1] > 0.0 > blue.velocity[1]
+    ways = {o.object: o.direction for o in made.objectives if o.kind == "moves"}
+    assert ways == {red.name: "left", blue.name: "right"}
+
+
+@pytest.mark.parametrize(
+    ("words", "axis", "sign", "gap"),
+    [
+        ("2 m in front of", 0, 1, 2.0),
+        ("1 m behind", 0, -1, 1.0),
+        ("30 cm to the left of", 1, 1, 0.3),
+        ("40 cm to the right of", 1, -1, 0.4),
+    ],
+)
+def test_a_distance_before_a_side_is_no_height(words, axis, sign, gap):
+    made = plan(f"A ball is dropped {words} a box.")
+    ball, box = around(made.object("ball")), around(made.object("box"))
+    apart = ball.low[axis] - box.high[axis] if sign > 0 else box.low[axis] - ball.high[axis]
+    assert apart == pytest.approx(gap, abs=1e-3) and ball.low[2] == pytest.approx(0.5)
+
+
+def test_a_fall_for_a_time_is_from_as_high():
+    assert around(plan("A ball falls for 0.5 seconds.").object("ball")).low[2] == pytest.approx(GRAVITY / 8, abs=1e-3)
+
+
+def test_what_slides_for_a_time_starts_as_fast():
+    made = plan("A cube slides across the ground for 2 seconds and stops.")
+    assert made.object("cube").velocity[0] == pytest.approx(0.4 * GRAVITY * 2.0, abs=0.01)
+    assert made.simulation.duration > 2.0 and {"eventually", "speed_between"} <= ops(made, "cube")
+
+
+def test_what_a_conveyor_is_with_rides_on_it():
+    made = plan("A conveyor with two crates runs at 0.3 m/s.")
+    belt = made.object("conveyor")
+    assert belt.surface_velocity == (0.3, 0.0, 0.0)
+    for name in ("crate_1", "crate_2"):
+        assert around(made.object(name)).low[2] == pytest.approx(around(belt).high[2], abs=0.002)
+
+
+def test_each_turntable_has_its_own():
+    made = plan("Two turntables turn at 30 rpm, one with a cube and the other with a mug.")
+    for name, table in (("cube", "turntable"), ("mug", "turntable_1")):
+        assert ("stays_on", table) in [(o.kind, o.ref) for o in made.objectives if o.object == name]
+
+
+def test_a_clause_of_a_thing_on_which_another_falls_is_its_own():
+    made = plan("A ball drops into a bucket that stands on a table.")
+    assert around(made.object("bucket")).low[2] == pytest.approx(around(made.object("table")).high[2])
+    made = plan("A cube falls beside the ball that lies on a table.")
+    assert around(made.object("cube")).low[2] > around(made.object("table")).high[2]
+    assert [clause.by for clause in made.clauses if clause.words == "lies"] == [["ball"]]
+
+
+@pytest.mark.parametrize(
+    ("sentence", "verb", "name"),
+    [
+        ("A ball drops on a box from a height of 50 cm.", "drops", "ball"),
+        ("A cube falls on the ball that lies on a table.", "falls", "cube"),
+        ("A ball falls on the left end of a seesaw and a cube on the right end flies up.", "flies", "cube"),
+        ("A tennis ball is dropped into a pot on a workbench.", "dropped", "tennis_ball"),
+    ],
+)
+def test_a_verb_is_tied_to_what_it_is_said_of(sentence, verb, name):
+    made = plan(sentence)
+    (clause,) = (clause for clause in made.clauses if clause.words == verb)
+    assert clause.objectives and {made.objectives[k].object for k in clause.objectives} <= {name, "seesaw"}
+    assert all(name in str(made.objectives[k]) for k in clause.objectives)
+
+
+def test_what_falls_then_is_let_go_later():
+    made = plan("A red ball drops and then a blue ball drops.")
+    (release,) = made.schedules
+    assert release.of == "blue_ball_held" and release.times == (1.0,)
+
+
+def test_what_comes_of_a_motion_is_no_name_alone():
+    made = plan("A ball bounces to 36 % of its height and then rests.")
+    assert [clause.by for clause in made.clauses if clause.words == "rests"] == [None]
+
+
+def test_a_verb_of_two_is_tied_to_what_is_asked_of_each():
+    made = plan("A heavy and a light ball drop from 1 m.")
+    (clause,) = (clause for clause in made.clauses if clause.words == "drop")
+    assert {made.objectives[k].object for k in clause.objectives} == {"ball", "ball_1"}

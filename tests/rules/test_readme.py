@@ -24,7 +24,7 @@ def listed(first: str, last: str) -> list[str]:
 
 BODIES = listed("block, box", "plant, lamp")
 STILL = [word.split(" (")[0] for word in listed("table, desk", "wall, ramp")]
-VESSELS = listed("tank, aquarium", "bucket, bowl, bin")
+VESSELS = listed("tank, aquarium", "bucket, bowl, pot, bin")
 HINGED = ["pendulum", "seesaw"]
 MATERIALS = [*listed("wood, pine", "steel"), *listed("iron, aluminium", "glass")]
 COLOURS = listed("red, green", "black, grey")
@@ -87,7 +87,11 @@ def named(error: UserError) -> set[str]:
 
 def test_the_words_are_found():
     assert (BODIES[0], BODIES[-1], len(BODIES)) == ("block", "lamp", 27)
-    assert (STILL[-1], VESSELS, MATERIALS[-1]) == ("ramp", ["tank", "aquarium", "bucket", "bowl", "bin"], "glass")
+    assert (STILL[-1], VESSELS, MATERIALS[-1]) == (
+        "ramp",
+        ["tank", "aquarium", "bucket", "bowl", "pot", "bin"],
+        "glass",
+    )
     assert "to the left of" in PLACES and "huge" in SIZES and "grey" in COLOURS
 
 

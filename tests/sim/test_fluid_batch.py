@@ -56,6 +56,10 @@ def same_bits(one: Recording, other: Recording) -> None:
     for prim, track in one.fluids.items():
         for name in ("position", "velocity", "density"):
             assert getattr(track, name).tobytes() == getattr(other.fluids[prim], name).tobytes(), name
+    for name in ("position", "volume"):
+        assert getattr(one.solids.walls, name).tobytes() == getattr(other.solids.walls, name).tobytes(), name
+        for prim, own in one.solids.bodies.items():
+            assert getattr(own, name).tobytes() == getattr(other.solids.bodies[prim], name).tobytes(), (prim, name)
     assert one.scalars.keys() == other.scalars.keys()
     for name, values in one.scalars.items():
         assert values.tobytes() == other.scalars[name].tobytes(), name

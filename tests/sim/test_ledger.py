@@ -146,6 +146,25 @@ def test_what_water_gives_is_what_its_particles_give(tmp_path, shape):
     assert not CheckFluidPush().run(Evidence(hidden))[0].passed
 
 
+def test_what_water_gives_a_ball_on_the_floor_is_what_its_particles_give(tmp_path):
+    """Lead, four spacings across: the water in the gap has a part in its lift, and a fifth of that more is found."""
+
+    def build(scene):
+        scene.simulation(duration=0.4, frame_rate=60.0)
+        tank = scene.tank("tank", inner_size=(0.36, 0.36, 0.3))
+        scene.fluid("water", fills=tank, level=0.24, spacing=0.03)
+        scene.sphere("ball", radius=0.06, density=11340.0, position=(0.01, 0.0, 0.06 + 1e-4))
+
+    recording = run(tmp_path, build)
+    lift = 1000.0 * G * 4.0 / 3.0 * math.pi * 0.06**3
+    finding = CheckFluidPush().run(Evidence(recording))[0]
+    assert finding.passed and finding.limit < 0.2 * lift
+    for wrong in (0.8, 1.2):
+        said = replace(recording, applied_impulse=wrong * recording.applied_impulse)
+        assert not CheckFluidPush().run(Evidence(said))[0].passed
+    assert not CheckFluidPush().run(Evidence(replace(recording, solids=None)))[0].passed
+
+
 def test_what_nothing_drives_keeps_no_books(tmp_path):
     def build(scene):
         scene.simulation(duration=0.1)

@@ -23,6 +23,7 @@ from wsim.recording.contacts import read_contacts
 from wsim.recording.frames import LogLine
 from wsim.recording.recording import FluidTrack, ImageTrack, Recording, SeenTrack
 from wsim.recording.sensors import read_sensors
+from wsim.recording.solids import read_solids
 from wsim.recording.table import Clock, Table
 from wsim.recording.ties import read_ties
 from wsim.scene.world import Camera, World
@@ -72,6 +73,7 @@ def read(path: str | Path) -> Recording:
         lead=lead,
         wall_impulse=read_frames(table, frame_ns, names.WALL_IMPULSE),
         contacts=read_contacts(table, frame_ns),
+        solids=read_solids(table, world),
         ties=read_ties(table, world, frame_ns),
         sensors=read_sensors(table, world, clock),
     )

@@ -14,6 +14,7 @@ from PIL import Image
 from wsim.recording.contacts import ContactTrack
 from wsim.recording.frames import FluidFrame, Frame, LogLine
 from wsim.recording.sensors import SensorTrack
+from wsim.recording.solids import Solids
 from wsim.recording.ties import TieTrack
 from wsim.scene.world import Camera, World
 
@@ -98,6 +99,7 @@ class Recording:
     wall_impulse: Floats | None = None  # (T, 3) [N s], of fluid on all that stands still since the frame before
     lead: Floats | None = None  # (T, B, 6) [N s, N m s], momentum and angular momentum beside all impulses, likewise
     contacts: ContactTrack | None = None  # what pairs of shapes gave each other since the frame before
+    solids: Solids | None = None  # particles that stand for what fluids meet; None in recordings of before
     ties: TieTrack | None = None  # what joints, springs and ropes gave, likewise; None in recordings of before
     sensors: Mapping[str, SensorTrack] = field(default_factory=dict)  # by prim
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from wsim.recording.frames import LogLine
 from wsim.recording.recording import FluidTrack, Recording
+from wsim.recording.solids import Solids
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -37,6 +38,7 @@ class Trajectories:
         applied: What fluid and control gave to bodies and walls since the frame before, by a recording's field, each
             with the copies' axis first, as `applied_impulse` (W, T, B, 3) [N s]; empty where nothing did.
         fluids: (W,) the particles of each copy by the fluid's prim; empty without any.
+        solids: (W,) the particles of what the fluids of each copy meet; empty where they are not known.
         metadata: As of a recording.
         own_metadata: (W,) what a copy has of its own beside it; empty where none has.
         worlds: (W,) what each copy's own stage states, where they differ in more than masses; empty where they do not.
@@ -55,6 +57,7 @@ class Trajectories:
     worlds: Sequence[World] = ()
     applied: dict[str, Array] = field(default_factory=dict)
     fluids: Sequence[dict[str, FluidTrack]] = ()
+    solids: Sequence[Solids] = ()
     own_metadata: Sequence[dict[str, Any]] = ()
 
     def __post_init__(self) -> None:
@@ -76,7 +79,7 @@ class Trajectories:
             shape = wanted.get(name, (worlds, frames))
             if array is not None and array.shape != shape:
                 raise ValueError(f"{name} has shape {array.shape}; it must be {shape}")
-        for name in ("problems", "worlds", "fluids", "own_metadata"):
+        for name in ("problems", "worlds", "fluids", "solids", "own_metadata"):
             count = len(getattr(self, name))
             if count not in (0, worlds):
                 raise ValueError(f"{name} has {count} entries; it must have one for each of {worlds} worlds")
@@ -104,6 +107,7 @@ class Trajectories:
             worlds=self.worlds[some],
             applied={name: array[some] for name, array in self.applied.items()},
             fluids=self.fluids[some],
+            solids=self.solids[some],
             own_metadata=self.own_metadata[some],
         )
 
@@ -140,6 +144,7 @@ class Trajectories:
             body_qd=self.body_qd[k],
             contact_force=self.contact_force[k],
             fluids=self.fluids[k] if self.fluids else {},
+            solids=self.solids[k] if self.solids else None,
             scalars=scalars,
             log=[LogLine(end, "ERROR", problem) for problem in problems],
             images={},

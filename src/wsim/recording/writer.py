@@ -26,6 +26,7 @@ from wsim.recording.contacts import WIDTH as CONTACT_WIDTH
 from wsim.recording.frames import Frame
 from wsim.recording.sensors import SensorBuffer
 from wsim.recording.shapes import is_nested, log_camera, log_scene
+from wsim.recording.solids import Solids, send_solids
 from wsim.scene.world import World
 
 if TYPE_CHECKING:
@@ -106,6 +107,17 @@ class RecordingWriter:
             self._rows.add(names.SCALAR_ROOT + name, ns, {names.SCALARS: float(value)})
         if time.monotonic() - self._flushed_at > FLUSH_SECONDS:
             self._flush()
+
+    def solids(self, solids: Solids) -> None:
+        """Record the particles that stand for what the fluids meet: once, as they stay on walls and in bodies.
+
+        Raises:
+            ValueError: A body is none of the world's.
+        """
+        self._check_open()
+        if unknown := solids.bodies.keys() - {body.prim for body in self.world.bodies}:
+            raise ValueError(f"solids: no bodies {sorted(unknown)} in the world")
+        send_solids(self._stream, solids)
 
     def log(self, t: float, level: str, text: str, prim: str | None = None) -> None:
         """Record a line of the log.

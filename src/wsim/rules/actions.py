@@ -12,6 +12,7 @@ from wsim.rules.lexicon import lexicon
 from wsim.rules.phrases import Action, Place
 from wsim.rules.places import MANNERS, UPRIGHT, arrange, common, do, hang, part, put, stand, support, where
 from wsim.rules.reader import EACH_OTHER, Reader
+from wsim.rules.starts import check_starts
 from wsim.rules.tokens import NOT_IN_THIS_ORDER, NotUnderstood
 
 MOVES = ("roll", "slide", "push", "throw", "swing", "meet", "hang", "tilt")  # what a thing does on the ground alone
@@ -20,6 +21,8 @@ _INTO = ("into", "to", "against", "towards", "at")
 
 def act(reader: Reader, thing: Thing, action: Action) -> None:
     """Let a thing do what a clause says."""
+    check_starts(thing, action)
+    reader.cast.said.append((thing, action))
     (_be if action.verb == "be" else _RULES[action.verb])(reader, thing, action)
 
 
@@ -33,6 +36,7 @@ def meet(reader: Reader, things: list[Thing], action: Action) -> None:
         if not other and not ground and not all(common(reader, thing, place) for thing in things):
             raise NotUnderstood([place.words], NOT_IN_THIS_ORDER)
     for thing in things:
+        reader.cast.said.append((thing, action))
         put(thing, "ground")
         do(thing, "meet")
         if action.verb in ("roll", "slide"):
@@ -232,6 +236,8 @@ def _go(reader: Reader, thing: Thing, action: Action) -> None:
         raise UserError(f"{action.words!r}: the seesaw goes down at its {seesaw.side} end, the prompt says so")
     seesaw.side = falls_
     do(seesaw, "tilt")
+    if thing is not seesaw and not down:
+        do(thing, "rise")
 
 
 def _balance(reader: Reader, thing: Thing, action: Action) -> None:

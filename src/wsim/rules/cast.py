@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from wsim.plan.schema import Assumption, AssumptionKind
 from wsim.rules.lexicon import Noun, lexicon
-from wsim.rules.phrases import Phrase
+from wsim.rules.phrases import Action, Phrase
 
 ROUND = ("sphere", "cylinder", "capsule")
 CARRIERS = ("belt", "turntable")  # families of what moves under what stands on it
@@ -53,6 +53,7 @@ class Thing:
     delay: float | None = None  # [s] after which it is let go, or pushed
     force: float | None = None  # that pushes it [N]
     pushed_for: float | None = None  # [s]
+    lasts: float | None = None  # for which it goes [s]
     way: float | None = None  # that it drives [m]
     angle: float | None = None  # [deg] of a throw, or of a pendulum at the start
     direction: str | None = None
@@ -116,6 +117,8 @@ class Cast:
     pour: Pour | None = None
     ground: str | None = None  # the ground's material, if it is said
     only: list[tuple[Thing, str]] = field(default_factory=list)  # what alone of all in the water does what
+    said: list[tuple[Thing, Action]] = field(default_factory=list)  # all that things are said to do
+    named: list[tuple[Thing, Phrase]] = field(default_factory=list)  # by which words each is named
     office: str | None = None  # the prompt's words for one that is patrolled
     duration: float | None = None  # [s], if it was given
     assumptions: list[Assumption] = field(default_factory=list)

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from wsim.defaults import GRAVITY
 from wsim.errors import UserError
 from wsim.rules.cast import CARRIERS, Thing
 from wsim.rules.goes import aim, go, movable, strike
 from wsim.rules.phrases import Action, Place
-from wsim.rules.places import common, do, put, put_inside, stand, support, where
+from wsim.rules.places import common, do, put, put_inside, refuse_afloat, stand, support, where
 from wsim.rules.reader import Reader
 from wsim.rules.tokens import NOT_IN_THIS_ORDER, NotUnderstood
 
+_LET_GO = {"let", "released"}  # of which one word is in what is said of what starts from rest where it is
 _INTO = ("in", "into", "inside", "on", "onto", "to", "at", "against")
 
 
@@ -25,6 +29,9 @@ def topple(reader: Reader, thing: Thing, action: Action) -> None:
         raise NotUnderstood([action.words], "lets a stack, a row or a body topple, but not this:")
     for place in action.places:
         if not common(reader, thing, place):
+            ground = place.phrase is not None and where(reader, place.phrase, thing) == "ground"
+            if place.preposition not in ("on", "in", "at") and not ground:
+                raise NotUnderstood([action.words], "lets things fall over, but not at or onto others:")
             _land(reader, thing, action, place)
     if not thing.group and thing.count > 1:
         reader.cast.assume(thing.words, "in a row", "the prompt does not say how they stand")
@@ -38,6 +45,11 @@ def fall(reader: Reader, thing: Thing, action: Action) -> None:
     if thing.noun.family == "pendulum" or thing.rod is not None:
         _let_go(reader, thing, action)
         return
+    high = thing.drop_height is not None or any(place.length is not None for place in action.places)
+    times = [place.value or 0.0 for place in action.places if place.preposition == "time"]
+    if times and not high and action.verb == "fall":  # "falls for a second": from so high; else it is the run's time
+        thing.drop_height = round(GRAVITY * times[0] ** 2 / 2, 4)
+        action = replace(action, places=[place for place in action.places if place.preposition != "time"])
     aimed = [place for place in action.places if place.preposition not in ("time", "toward", "in_turn")]
     over = action.particle == "over" or (thing.group and not aimed and action.particle != "in")
     if action.verb == "fall" and (over or (action.particle == "down" and thing.group)):
@@ -69,7 +81,7 @@ def fall(reader: Reader, thing: Thing, action: Action) -> None:
             thing.does.remove("drop")
         elif place.preposition == "from":
             raise NotUnderstood([action.words], "needs a height after 'from', as in 'from 0.5 m':")
-        elif place.preposition == "on" and place.phrase is not None and _on_ramp(reader, thing, place):
+        elif place.preposition == "on" and _LET_GO & {*action.words.split()} and _on_ramp(reader, thing, place):
             thing.does.remove("drop")
         elif not common(reader, thing, place):
             _land(reader, thing, action, place)
@@ -86,7 +98,13 @@ def _on_ramp(reader: Reader, thing: Thing, place: Place) -> bool:
 
 
 def _let_go(reader: Reader, thing: Thing, action: Action) -> None:
-    """A pendulum that is let go swings."""
+    """A pendulum that is let go swings.
+
+    Raises:
+        NotUnderstood: It is to drop, which its rod or rope does not let it.
+    """
+    if not _LET_GO & {*action.words.split()} and not any(place.preposition == "angle" for place in action.places):
+        raise NotUnderstood([action.words], "lets what hangs swing, or be let go, but not fall:")
     for place in action.places:
         if place.preposition == "angle":
             thing.angle = place.value
@@ -162,11 +180,14 @@ def _land(reader: Reader, thing: Thing, action: Action, place: Place) -> None:
     if below is not None and place.preposition in ("on", "in"):
         stand(reader, below, [place])
         return
+    refuse_afloat(reader, thing, place)
     at = where(reader, place.phrase, thing)
     if not isinstance(at, Thing):
         put(thing, at)
     elif at.noun.family == "vessel":
         put_inside(reader, thing, at)
+    elif place.preposition in ("into", "inside") and at.noun.family == "solid" and not at.group:
+        raise NotUnderstood([place.words], "builds it as a solid body with no room in it, so nothing falls in:")
     elif at.noun.family in CARRIERS:
         raise NotUnderstood([action.words], "sets things on a belt or a turntable, and drops nothing onto it:")
     else:

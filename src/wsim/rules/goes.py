@@ -51,9 +51,11 @@ def go(reader: Reader, thing: Thing, action: Action, how: str) -> None:
         thing.pushed_for = lasting.value if lasting is not None else None
         action = replace(action, places=[place for place in action.places if place not in (*forces[:1], lasting)])
     for place in action.places:
-        if common(reader, thing, place):
+        if place.preposition == "time":
+            thing.lasts = place.value
+        elif common(reader, thing, place):
             continue
-        if place.preposition == "toward":
+        elif place.preposition == "toward":
             thing.direction = place.direction
         elif place.preposition == "from" and place.phrase is not None and place.phrase.kind == "part":
             _on_path(reader, thing, action, place)
@@ -68,6 +70,9 @@ def go(reader: Reader, thing: Thing, action: Action, how: str) -> None:
     do(thing, how)
     for place in aims:
         _towards(reader, thing, action, place)
+    alone = not (thing.support or thing.path or thing.target or thing.off or thing.into)
+    if thing.lasts is not None and not (alone and (how != "push" or thing.speed is None)):
+        reader.cast.duration, thing.lasts = thing.lasts, None  # what else goes on has its own time: it is the run's
     if thing.target is None and thing.count > 1 and thing.path is None and thing.support is None and not thing.group:
         reader.cast.assume(thing.words, "side by side", "the prompt does not say how they stand")
 

@@ -17,8 +17,8 @@ from lark.lexer import Lexer
 
 from wsim.rules.lexicon import grammar_text, lexicon
 from wsim.rules.phrases import Action, Clause, Phrase, Place
-from wsim.rules.stories import beside_it, delayed, gapped, list_of, names_only
-from wsim.rules.things import is_of, meant, phrases
+from wsim.rules.stories import beside_it, delayed, gapped, had, list_of, names_only, parted
+from wsim.rules.things import is_of, meant, phrases, span
 from wsim.rules.tokens import NOT_IN_THIS_ORDER, NotUnderstood, Tokens
 from wsim.rules.wheres import Wheres
 
@@ -70,7 +70,7 @@ class _Clauses(Wheres):
         """The clauses; those after "a tank in which" say where their things are, up to the next full stop."""
         clauses: list[Clause] = []
         within, later = None, None
-        for before, child in pairwise([None, *children]):
+        for before, child, after in zip([None, *children], children, [*children[1:], None], strict=False):
             if isinstance(child, Clause) and before == "list" and clauses and list_of(clauses[-1], child):
                 continue
             if isinstance(child, Place) and child.preposition == "after":
@@ -82,24 +82,28 @@ class _Clauses(Wheres):
                     clauses[-1].subjects += child.subjects  # "in a tank there is a stone and a log"
                     continue
                 if before is None and clauses:
-                    gapped(clauses[-1], child)
+                    gapped(clauses[-1], child, has=after == "with")
                 if before == "with" and clauses and clauses[-1].actions and not child.actions:
                     beside_it(clauses[-1], child)
                 child.within, child.given = within, before == "with"
-                clauses.append(delayed(child, later))
+                if child.given and clauses:
+                    parted(clauses)
+                    clauses += [delayed(one, later) for one in had(clauses[-1], child, self.tokens.text)]
+                else:
+                    clauses.append(delayed(child, later))
             elif isinstance(child, tuple):  # "a chair faces a table on which a vase stands"
                 clauses += [delayed(one, later) for one in child]
             elif isinstance(child, str):
                 within, later = (None if child == "stop" else within), None
         return clauses
 
-    def full(self, _meta: Any, children: list[Any]) -> Clause:
+    def full(self, meta: Any, children: list[Any]) -> Clause:
         subjects = phrases(children)
         actions = [child for child in children if isinstance(child, Action)]
         for before, action in pairwise(children):  # "hits a tower, which topples"
             if isinstance(action, Action) and action is not actions[0] and is_of(before, "REL"):
                 action.relative = True
-        return Clause(subjects, actions)
+        return Clause(subjects, actions, then=self.tokens.text[: meta.start_pos].rstrip(" ,").endswith(_LATER))
 
     bare = full
 
@@ -107,7 +111,7 @@ class _Clauses(Wheres):
         """ "Drop a ball into a tank": what it does, or has done to it, by what comes after "with"."""
         lead = next(i for i, child in enumerate(children) if is_of(child, "COMMAND"))
         by = next((i for i, child in enumerate(children) if is_of(child, "USING")), len(children))
-        action = Action(meant(children[lead]), self._words(meta))
+        action = Action(meant(children[lead]), self._words(meta), at=span(meta))
         things = phrases(children[lead + 1 : by])
         places = [child for child in children[lead + 1 : by] if isinstance(child, Place)]
         for place in self._given_on(things[-1:], places):
@@ -166,7 +170,7 @@ class _Clauses(Wheres):
         places = [child for child in children if isinstance(child, Place)]
         said = next(child for child in children if is_of(child, "VERB", "BE"))
         verb = "rest" if is_of(said, "BE") else meant(said)
-        return Clause(subjects, [Action(verb, self._words(meta), places=places)], inverted=True)
+        return Clause(subjects, [Action(verb, self._words(meta), places=places, at=span(meta))], inverted=True)
 
     def within(self, meta: Any, children: list[Any]) -> Place:
         phrase = next(child for child in children if isinstance(child, Phrase))
@@ -182,7 +186,9 @@ class _Clauses(Wheres):
             return "with" if marks[0].type == "WITH" else "list"
         return "stop" if any(is_of(child, "BREAK") and str(child) in _STOPS for child in children) else "break"
 
-    def sep(self, _meta: Any, children: list[Any]) -> str:
+    def sep(self, _meta: Any, children: list[Any]) -> str | None:
+        if is_of(children[0], "JOIN", "COMMA"):
+            return None
         return "stop" if str(children[0]) in _STOPS else "break"
 
     def joiners(self, _meta: Any, _children: list[Any]) -> None:
@@ -192,7 +198,7 @@ class _Clauses(Wheres):
 
     def does(self, meta: Any, children: list[Any]) -> Action:
         verb = next(child for child in children if is_of(child, "VERB", "ING"))
-        action = Action(meant(verb), self._words(meta))
+        action = Action(meant(verb), self._words(meta), at=span(meta))
         action.target = next((child for child in children if isinstance(child, Phrase)), None)
         inner = [action.target] if action.target is not None else []
         for place in self._given_on(inner, [child for child in children if isinstance(child, Place)]):
@@ -210,14 +216,15 @@ class _Clauses(Wheres):
         instead = self.tokens.known.negated.get(meant(verb))
         if instead is None:
             raise self.tokens.fail(meta.start_pos)
-        action = Action("rest" if instead == "still" else instead, self._words(meta))
+        action = Action("rest" if instead == "still" else instead, self._words(meta), at=span(meta))
         action.places = [child for child in children if isinstance(child, Place) and child.preposition != "bare"]
         action.places += [Place("still", words=str(verb))] if instead == "still" else []
         return action
 
     def stands(self, meta: Any, children: list[Any]) -> Action:
         places = self._given_on([], [child for child in children if isinstance(child, Place)])
-        return Action("rest", self._words(meta), places=places)
+        return Action("rest", self._words(meta), places=places, at=span(meta))
 
 
 _STOPS = (".", "!")
+_LATER = ("then", "after which")  # before what comes later

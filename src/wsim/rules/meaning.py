@@ -8,8 +8,10 @@ from itertools import pairwise
 from wsim.assets import get
 from wsim.errors import UserError
 from wsim.rules.actions import MOVES, act, meet
-from wsim.rules.cast import Cast, Pour, Thing
+from wsim.rules.cast import CARRIERS, Cast, Pour, Thing
+from wsim.rules.later import later
 from wsim.rules.lexicon import lexicon
+from wsim.rules.partly import others
 from wsim.rules.phrases import Action, Clause, Phrase, Place
 from wsim.rules.places import CARRIED, UPRIGHT, common, do, put_inside, stand, support
 from wsim.rules.reader import EACH_OTHER, Reader
@@ -28,6 +30,8 @@ def understand(clauses: list[Clause]) -> Cast:
     for clause in [each for one in clauses for each in _of_the_last(one)]:
         _clause(reader, clause)
     _settle(reader)
+    for found in (reader.cast.said, reader.cast.named):
+        found[:] = [(now, said) for thing, said in found for now in reader.now(thing)]  # type: ignore[misc]
     return reader.cast
 
 
@@ -44,6 +48,7 @@ def _of_the_last(clause: Clause) -> list[Clause]:
 def _clause(reader: Reader, clause: Clause) -> None:
     """Take in one clause."""
     _say_held(clause)
+    did = {id(thing): [*thing.does] for thing in reader.cast.things}
     subjects: list[Thing] = []
     scenery = []
     pending: list[Thing] = []
@@ -62,14 +67,14 @@ def _clause(reader: Reader, clause: Clause) -> None:
             _given(reader, [*given, *found] if _inside(phrase) else found, phrase)
             given = [] if phrase.places else [*given, *found]
             continue
-        if phrase.places:  # "a cork ball and an iron ball in a tank": both are in it
+        if phrase.places and not clause.again:  # "a cork ball and an iron ball in a tank": both are in it
             before = pending[: -len(found)] if found and not clause.given else []
             if before and any(place.phrase is not None and place.phrase.part == "it" for place in phrase.places):
                 reader.last, pending = before[-1:], found  # "a table and a laptop on it"
             for thing in pending:
                 stand(reader, thing, phrase.places)
             pending = []
-        for said in phrase.clauses:
+        for said in phrase.clauses if not clause.again else ():
             _together(reader, found, said)
     if any(phrase.only for phrase in clause.subjects):
         _only(reader, clause, subjects)
@@ -81,6 +86,8 @@ def _clause(reader: Reader, clause: Clause) -> None:
     if named:
         reader.spoken = [one for phrase in named for one in reader.now(reader.thing(phrase))]
     if any(p.members is not None or p.kind not in ("choice", "pronoun", "part") for p in clause.subjects):
+        if clause.given:
+            reader.earlier.append((reader.spoken, reader.chosen))
         reader.spoken, reader.chosen = [*subjects], []
     for number, action in enumerate(clause.actions):
         last = _last(reader, clause.actions[number - 1]) if action.relative and number else None
@@ -90,11 +97,13 @@ def _clause(reader: Reader, clause: Clause) -> None:
             _together(reader, subjects, action)
         for phrase in _places_of(action):
             _say(reader, phrase, subjects)
-    for phrase in clause.subjects:
+    for phrase in clause.subjects if not clause.again else ():
         for place in phrase.places:
             for each in (place.phrase, place.other):
                 if each is not None:
                     _say(reader, each, subjects)
+    if clause.then:
+        later(reader, clause, subjects, did)
     if subjects:
         reader.last = [thing for thing in subjects if thing in reader.cast.things] or reader.last
 
@@ -115,14 +124,17 @@ def _inside(phrase: Phrase) -> bool:
 def _given(reader: Reader, things: list[Thing], phrase: Phrase) -> None:
     """ "A desk with a monitor, and a mouse in front of it": on the desk, but for other furniture; "it" is the last."""
     for thing in things:
-        tables = [one for one in reader.last if one.noun.family == "furniture" and one.count == 1]
-        carrier = next((one for one in tables if one.noun.key not in UPRIGHT), None)
+        carriers = [one for one in reader.last if one.noun.family in _CARRY and one.noun.key not in UPRIGHT]
+        carrier = next((one for one in carriers if one.count == 1), None)
         asset = get(thing.noun.asset) if thing.noun.asset is not None else None
         small = asset is None or not asset.category.startswith(FURNITURE)
         stand(reader, thing, phrase.places)
         if carrier is not None and small and thing.place is None and thing.noun.family in CARRIED:
-            support(reader, thing, carrier)
-            do(thing, "rest")
+            if carrier.noun.family == "vessel":
+                put_inside(reader, thing, carrier)
+            else:
+                support(reader, thing, carrier)
+            do(thing, "ride" if carrier.noun.family in CARRIERS else "rest")
         reader.last = [thing, *reader.last]
     for said in phrase.clauses:
         _together(reader, things, said)
@@ -264,14 +276,17 @@ def _say(reader: Reader, phrase: Phrase, subjects: list[Thing]) -> None:
         return
     if reader.is_scenery(phrase):
         raise NotUnderstood([phrase.words], "lets blocks and balls act, but not a tank, water or the ground")
-    thing = reader.thing(phrase) if phrase.kind != "group" or phrase.members is not None else None
+    named = phrase.kind != "pronoun" and (phrase.kind != "group" or phrase.members is not None)
+    thing = reader.thing(phrase) if named else None  # "a ball on it that rolls off": the ball does
     for said in phrase.clauses:
-        own = thing is not None and (thing.noun.family in _ACTS or said.verb in ("run", "move", "tilt"))
+        stands = said.verb == "rest" and any(place.phrase is not None for place in said.places)
+        own = thing is not None and (thing.noun.family in _ACTS or stands or said.verb in ("run", "move", "tilt"))
         for one in [thing] if own and thing is not None else subjects:
             act(reader, one, said)
 
 
 PASSIVE = ("hit", "knock", "topple", "push", "touch", "carry")
+_CARRY = ("furniture", "vessel", *CARRIERS)  # families of what has on it, or in it, what it is said to be with
 FURNITURE = "furniture"  # of the catalogue's categories: what stands beside a table, not on it
 _ACTS = ("solid", "belt", "turntable", "pendulum", "seesaw", "robot", "vehicle")
 
@@ -330,7 +345,7 @@ def _settle(reader: Reader) -> None:
     """Give each thing whose place is open the one that the rest of the scene leaves for it."""
     for thing in [one for one in reader.cast.things if one.count > 1 and one.noun.family in _SINGLE]:
         reader.split(thing)
-    _others(reader.cast)
+    others(reader)
     for thing in reader.cast.things:
         _share_table(thing)
         check_used(thing, struck=any(one.target is thing for one in reader.cast.things))
@@ -347,15 +362,6 @@ def _settle(reader: Reader) -> None:
     _check_water(reader.cast)
     if not reader.cast.things and not reader.cast.wet and reader.cast.pour is None:
         raise NotUnderstood(["the prompt"], "found nothing to build in")
-
-
-def _others(cast: Cast) -> None:
-    """Let all else in the water do the other than what only some do."""
-    for verb in {verb for _, verb in cast.only}:
-        alone = {id(thing) for thing, one in cast.only if one == verb}
-        for thing in cast.things:
-            if id(thing) not in alone and thing.place == "water":
-                do(thing, {"float": "sink", "sink": "float"}[verb])
 
 
 def _check_water(cast: Cast) -> None:

@@ -37,6 +37,7 @@ class Phrase:
     clauses: list[Action] = field(default_factory=list)  # "that sinks", "floating"
     only: bool = False  # "only the cork"
     filled: bool = False  # a container that was said to hold water
+    at: int = -1  # where its words begin in the prompt as it is read
     places: list[Place] = field(default_factory=list)
 
     @property
@@ -69,6 +70,7 @@ class Action:
     target: Phrase | None = None
     particle: str | None = None
     relative: bool = False  # said of a thing that the words before name: "that runs"
+    at: tuple[int, int] = (-1, -1)  # from and to where its words are in the prompt as it is read
     places: list[Place] = field(default_factory=list)
 
 
@@ -81,6 +83,8 @@ class Clause:
     inverted: bool = False  # "on a table stands a lamp": its things come last
     given: bool = False  # after "with": what the things before have
     within: Place | None = None  # of "a tank in which": where all of them are
+    then: bool = False  # after "then": what comes later
+    again: bool = False  # of things that a clause before has named, with all that is said of where they are
 
     @property
     def words(self) -> str:

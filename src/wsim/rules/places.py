@@ -42,6 +42,7 @@ def stand(reader: Reader, thing: Thing, places: list[Place]) -> None:
         if number and below is not None and (below.place is None or below.place == "ground"):
             stand(reader, below, [place])
             continue
+        refuse_afloat(reader, thing, place)
         _stand_at(reader, thing, place, at)
 
 
@@ -51,6 +52,8 @@ def _stand_at(reader: Reader, thing: Thing, place: Place, at: Phrase) -> None:
         if at.kind == "pronoun" and (found.round or found.rod is not None):
             # Nothing stands on a ball, or on what hangs: it is what that is on, or above.
             found = found.path or found.support or found
+        if part(at) in ("end", "bottom", "edge") and found.noun.family == "ramp":
+            raise NotUnderstood([place.words], "stands things on a ramp, at its top, but not there:")
         if part(at) == "middle" and found.noun.family == "turntable":
             thing.side = "middle"
         inside = place.preposition in ("in", "inside", "into")
@@ -200,6 +203,8 @@ def _furniture(thing: Thing) -> bool:
 
 def _above(reader: Reader, thing: Thing, place: Place, other: str | Thing) -> None:
     """Above a thing is where a fall begins."""
+    if isinstance(other, Thing) and thing.support not in (None, other):
+        raise NotUnderstood([place.words], "drops what is above a thing, and this stands on another:")
     if place.length is not None:
         thing.drop_height = place.length
     elif thing.drop_height is None and not isinstance(other, Thing):
@@ -256,6 +261,22 @@ def where(reader: Reader, phrase: Phrase, thing: Thing | None = None) -> str | T
             return "water"
         return reader.it(phrase, thing)
     return reader.thing(phrase)
+
+
+def refuse_afloat(reader: Reader, thing: Thing, place: Place) -> None:
+    """Refuse "a plank floats and a cube lies on it", which the water is not.
+
+    Raises:
+        NotUnderstood: It is on what is in the water.
+    """
+    swims = any(one is not thing and one.place == "water" for one in reader.last)
+    if (
+        place.preposition in ("on", "onto")
+        and place.phrase is not None
+        and place.phrase.part in ("it", "them")
+        and swims
+    ):
+        raise NotUnderstood([place.words], "stacks things on the ground, not on what is in the water:")
 
 
 def part(phrase: Phrase) -> str | None:

@@ -15,11 +15,13 @@ import re
 from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.asked.tied import tied
+from wsim.plan.feasible.plan import refuse_impossible
 from wsim.plan.layout import layout
 from wsim.plan.layout.bodies import around
 from wsim.plan.layout.land import set_down
 from wsim.plan.schema import Plan, SimulationPlan
 from wsim.plan.views import cameras
+from wsim.rules.built import check_built
 from wsim.rules.cast import Cast
 from wsim.rules.grammar import parse
 from wsim.rules.lexicon import lexicon
@@ -40,6 +42,7 @@ from wsim.rules.scenes.seesaw import build_seesaws
 from wsim.rules.scenes.tank import build_tank
 from wsim.rules.scenes.timed import hold
 from wsim.rules.steps import steps
+from wsim.rules.ties import tied_to
 from wsim.rules.tokens import NotUnderstood
 
 __all__ = ["NotUnderstood", "plan"]
@@ -75,7 +78,7 @@ def plan(prompt: str) -> Plan:
     _hang(scene, placed, cast)
     ties = {"joints": scene.joints, "cords": scene.cords, "schedules": scene.schedules}
     whole = set_down(Plan(objects=[*placed.objects, *scene.posed], **ties, **common))
-    return tied(
+    made = tied(
         Plan.model_validate(
             {
                 **whole.model_dump(),
@@ -87,6 +90,9 @@ def plan(prompt: str) -> Plan:
             }
         )
     )
+    check_built(made, cast, scene.names)
+    refuse_impossible(made, "the builtin planner's plan of this")
+    return tied_to(made, cast, scene.names)
 
 
 def _scene(cast: Cast) -> Part:
@@ -161,7 +167,7 @@ def _note_what_is_common(cast: Cast, prompt: str, duration: float, scene: Part) 
     if cast.duration is None:
         what = "the way, and time" if scene.cameras else "time"
         cast.assume("scene", f"{duration:g} s long", f"{what} to come to rest; the prompt gives no duration")
-    if "then" in words:
+    if "then" in words and all(thing.delay is None for thing in cast.things):
         cast.assume("scene", "everything starts at once", "'then' gives no time, as 'after two seconds' does")
     views = ", ".join(camera.name for camera in scene.cameras) or "side and top"
     cast.assume("cameras", views, "the prompt names no view")

@@ -24,6 +24,9 @@ class Reader:
         self.last: list[Thing] = []  # what "it" and "they" mean
         self.spoken: list[Thing] = []  # among which "the first" or "the other" chooses
         self.chosen: list[Thing] = []  # by the choices so far
+        self.earlier: list[tuple[list[Thing], list[Thing]]] = []  # those two, before what "with" has named
+        self.told: set[str] = set()  # the kinds of which all were spoken of, before any was named
+        self.partly: list[tuple[list[Thing], list[Thing]]] = []  # some of several, and the others
         self.named: dict[int, Thing] = {}  # what a phrase was found to name, by identity
         self.singles: dict[int, list[Thing]] = {}  # what a thing that was several has become, by identity
         self.kept: list[Phrase] = []  # made on the way: their identity must stay theirs
@@ -96,6 +99,14 @@ class Reader:
 
     def subjects(self, phrase: Phrase, actions: list[Action]) -> list[Thing]:
         """The things that a clause is about."""
+        found = self._subjects(phrase, actions)
+        owner = self.named.get(id(phrase.owner)) if phrase.choice == "all" else None
+        if owner is not None and owner.phrase is phrase.owner and owner.phrase.definite:  # named by this alone
+            self.told.add(owner.kind)
+        self.cast.named += [(thing, phrase) for thing in found]
+        return found
+
+    def _subjects(self, phrase: Phrase, actions: list[Action]) -> list[Thing]:
         if phrase.kind == "pronoun":
             return self.pronoun(phrase, actions)
         if phrase.kind == "choice":
@@ -161,6 +172,10 @@ class Reader:
                 raise NotUnderstood([phrase.words], "cannot tell which of them this is")
             if known:
                 return known[0]
+        if phrase.kind in self.told:
+            raise NotUnderstood([phrase.words], "takes what all do for what was named before, and so not for this:")
+        if phrase.kind == "pronoun":
+            raise NotUnderstood([phrase.words], "cannot tell what this stands for")
         if phrase.kind in ("things", "one"):
             raise NotUnderstood([phrase.words], "needs to be told, after a colon, what this is")
         described = phrase
@@ -211,6 +226,9 @@ class Reader:
     def _choose(self, phrase: Phrase, kind: Phrase | None = None) -> list[Thing]:
         """Which of the things that were spoken of a choice means: "the first", "the other", "all", "the steel one"."""
         among = self._among(phrase, kind)
+        if phrase.choice == "other" and phrase.owner is None and self.earlier and not self.chosen:
+            self.spoken, self.chosen = self.earlier.pop()
+            among = self._among(phrase, kind)
         rest = [thing for thing in among if thing not in self.chosen]
         count = phrase.count or 1
         if phrase.choice == "all":
@@ -226,7 +244,11 @@ class Reader:
             found = _described(among, phrase)
         if not found or (phrase.choice in ("nth", "some") and len(found) < count and not found[0].group):
             raise NotUnderstood([phrase.words], "cannot tell which of what was spoken of this is")
+        if phrase.choice == "some" and found[0].group:
+            raise NotUnderstood([phrase.words], "cannot part a stack or a row, of which some would do this:")
         self.chosen += found
+        if phrase.choice == "some":
+            self.partly.append((found, [thing for thing in among if thing not in found]))
         return found
 
     def _among(self, phrase: Phrase, kind: Phrase | None) -> list[Thing]:
@@ -238,7 +260,10 @@ class Reader:
         else:
             among = self.spoken
         if phrase.members is not None:
-            among = [one for one in self.cast.things if one.kind == phrase.members.kind] or [self.thing(phrase.members)]
+            among = [one for one in self.cast.things if one.kind == phrase.members.kind]
+            if not among:
+                among = [self.thing(phrase.members)]
+                self.told.add(phrase.members.kind)
         among = [now for one in among for now in self.now(one)]
         whole = phrase.choice == "all"
         found: list[Thing] = []

@@ -42,13 +42,26 @@ def names_only(clause: Clause) -> bool:
     return not clause.actions and all(phrase.kind != "choice" for phrase in clause.subjects)
 
 
-def gapped(clause: Clause, named: Clause) -> None:
-    """ "Drop a ball into a tank and a box onto a table": the verb is said once."""
+def gapped(clause: Clause, named: Clause, has: bool) -> None:
+    """ "Drop a ball into a tank and a box onto a table": the verb is said once.
+
+    Args:
+        clause: With the verb.
+        named: What may be without.
+        has: Whether more is said of it: "and a conveyor with two crates runs".
+    """
     places = named.subjects[-1].places if named.subjects else []
     goes = bool(places) and all(place.preposition in _GOALS for place in places)
     last = clause.actions[-1] if clause.actions else None
     ends = last is not None and (last.target or (last.places and last.places[-1].phrase))
-    if ends and not places and names_only(named) and last is not None:  # "rolls into a box and a brick"
+    if (
+        not has
+        and not places
+        and names_only(named)
+        and last is not None
+        and (ends or named.then or not clause.inverted)
+    ):
+        # "rolls into a box and a brick", "rolls and a brick"
         raise NotUnderstood([f"{last.words} and {named.words}"], "cannot tell what is said of the last of these")
     if named.actions or not goes or len(clause.actions) != 1 or clause.actions[0].target is not None:
         return
@@ -62,3 +75,35 @@ def beside_it(clause: Clause, named: Clause) -> None:
     last = clause.actions[-1]
     if last.target is None and not last.places and last.verb not in ("rest", "float", "run", "tilt", "stack", "swing"):
         raise NotUnderstood([f"{last.words} with {named.words}"], "cannot tell what is said of the last of these")
+
+
+def parted(clauses: list[Clause]) -> None:
+    """ "One with a cube and the other with a ball": the other is no thing that the first has."""
+    last = clauses[-1]
+    if last.given and not last.actions and len(last.subjects) > 1 and last.subjects[-1].kind == "choice":
+        clauses.append(Clause([last.subjects.pop()]))
+
+
+def had(clause: Clause, has: Clause, text: str) -> list[Clause]:
+    """ "A cube with a ball on it slides": the cube does; "a table with a lamp, and a ball rolls off it": the ball does.
+
+    Args:
+        clause: What is named before "with".
+        has: What is named after it, and what is done.
+        text: The prompt.
+    """
+    if clause.actions or not has.actions or not text[: has.subjects[0].at].endswith("with "):
+        return [has]
+    places = [place for action in has.actions for place in action.places]
+    back = any(place.phrase is not None and place.phrase.part in ("it", "them") for place in places)
+    last = has.subjects[-1]
+    apart = len(has.subjects) > 1 and (back or text[: last.at].endswith((", and ", ", while ")))
+    if apart or last.kind in ("pronoun", "choice"):
+        named = [Clause(has.subjects[:-1], given=True, within=has.within)] if has.subjects[:-1] else []
+        return [*named, Clause([last], has.actions, given=not named, within=has.within)]
+    if back:
+        return [has]
+    return [
+        Clause(has.subjects, given=True, within=has.within),
+        Clause(clause.subjects, has.actions, again=True, within=has.within),
+    ]

@@ -76,7 +76,7 @@ class Things(Transformer):
         heads = [child for child in children if isinstance(child, Phrase) or is_of(child, *_HEADS)]
         head = heads[0] if heads else self._stuff(children)
         phrase = head if isinstance(head, Phrase) else phrase_of(head)
-        phrase.words = self._words(meta)
+        phrase.words, phrase.at = self._words(meta), meta.start_pos
         for child in children:
             if is_of(child, "THE", "ART", "POSS"):
                 phrase.definite = not is_of(child, "ART")
@@ -100,7 +100,7 @@ class Things(Transformer):
         if phrase.kind == "part" and phrase.owner is not None:
             phrase = phrase.owner  # "the edge of a table that is 0.8 m high"
         if is_of(child, "ING"):
-            phrase.clauses.append(Action(meant(child), str(child)))
+            phrase.clauses.append(Action(meant(child), str(child), at=(child.start_pos or 0, child.end_pos or 0)))
             return
         token, changes = child if isinstance(child, tuple) else (child, changes_of(child))
         for name, value in changes.items():
@@ -144,7 +144,7 @@ class Things(Transformer):
             whole.relative = True
             return whole
         verb = next(child for child in children if is_of(child, "ING"))
-        action = Action(meant(verb), self._words(meta), relative=True)
+        action = Action(meant(verb), self._words(meta), relative=True, at=span(meta))
         for place in (child for child in children if isinstance(child, Place)):
             self._place(action, place)
         return action
@@ -180,7 +180,9 @@ class Things(Transformer):
         """Some of what was spoken of before."""
         of = next((child for child in children if isinstance(child, Phrase)), None)
         count = next((meant(child) for child in children if is_of(child, "COUNT")), None)
-        return Phrase("choice", self._words(meta), definite=True, count=count, choice=which, owner=of)
+        return Phrase(
+            "choice", self._words(meta), definite=True, count=count, choice=which, owner=of, at=meta.start_pos
+        )
 
     def group(self, meta: Any, children: list[Any]) -> Phrase:
         phrase = Phrase("group", self._words(meta), arrangement=meant(children[0]))
@@ -230,13 +232,18 @@ class Things(Transformer):
         """What a clause of its own says of a thing: "the ramp is at 20 degrees"."""
         described = Phrase("described", self._words(meta))
         self._modify(described, children[-1])
-        return Action("be", self._words(meta), target=described)
+        return Action("be", self._words(meta), target=described, at=span(meta))
 
 
 def phrases(children: list[Any]) -> list[Phrase]:
     """The things among a rule's children, of which one may be two: "a red and a blue ball"."""
     lists = [child if isinstance(child, list) else [child] for child in children]
     return [child for each in lists for child in each if isinstance(child, Phrase)]
+
+
+def span(meta: Any) -> tuple[int, int]:
+    """From and to where a rule's words are."""
+    return (-1, -1) if meta.empty else (meta.start_pos, meta.end_pos)
 
 
 _HEADS = ("NOUN", "THINGS", "ONE", "FLUID", "GROUND", "PRONOUN")

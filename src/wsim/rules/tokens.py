@@ -49,7 +49,7 @@ class Tokens:
     """The prompt's words, and the tokens that they make."""
 
     def __init__(self, prompt: str, known: Lexicon) -> None:
-        self.text = " ".join(re.sub(r"(?<=\w)-(?=\w)", " ", _in_full(prompt.lower())).split())
+        self.text = as_read(prompt)
         self.known = known
         self.spans = [match.span() for match in _WORD.finditer(self.text)]
         self.words = [self.text[a:b] for a, b in self.spans]
@@ -74,8 +74,10 @@ class Tokens:
             at += used
             if token.type == "SHAPE" and tokens and tokens[-1].type == "LENGTH":
                 token.type, token.meaning = "DIMENSION", token.meaning[0]  # "1 m long"
-            if token.type == "SIDE" and tokens and tokens[-1].type == "LENGTH":
-                tokens[-1].type = "OFFSET"  # "20 cm behind": the distance, not a size
+            if token.type == "SIDE" and tokens and (tokens[-1].type == "LENGTH" or _is_height(tokens)):
+                tokens[
+                    -1
+                ].type = "OFFSET"  # "20 cm behind", "is dropped 2 m behind": the distance, not a size or height
             last = tokens[-1].type if tokens else ""
             if token.type == "COUNT" and str(token) == "one" and last in _LOOKS:
                 token.type = "ONE"  # "a small one"
@@ -177,6 +179,11 @@ _SHORT = (
 )
 
 
+def as_read(prompt: str) -> str:
+    """The prompt in lower case, with one space between words and nothing shortened."""
+    return " ".join(re.sub(r"(?<=\w)-(?=\w)", " ", _in_full(prompt.lower())).split())
+
+
 def _in_full(text: str) -> str:
     """ "There's", "doesn't": in full."""
     for short, full in _SHORT:
@@ -229,6 +236,11 @@ def _long_unit(known: Lexicon, words: list[str]) -> bool:
 def _falls(tokens: Sequence[Token]) -> bool:
     """Whether what comes next is how far something falls: "falls 2 m"."""
     return bool(tokens) and tokens[-1].type == "VERB" and getattr(tokens[-1], "meaning", None) in ("fall", "drop")
+
+
+def _is_height(tokens: Sequence[Token]) -> bool:
+    """Whether what came last was taken for how far something falls."""
+    return tokens[-1].type == "WAY" and _falls(tokens[:-1])
 
 
 def _drives(tokens: Sequence[Token]) -> bool:

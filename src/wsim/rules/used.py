@@ -51,7 +51,20 @@ def _bearing(thing: Thing) -> tuple[tuple[bool, str], ...]:
     goes = below is not None and below.noun.family in CARRIED and (posed(below) or bool(_GOES & {*below.does}))
     table = thing.support is not None and thing.support.noun.family != "belt"
     hangs = thing.rod is not None or thing.noun.family == "pendulum"
+    hit = thing.target
+    swung = hit is not None and (hit.rod is not None or hit.noun.family == "pendulum")
+    leans = hit is not None and hit.path is not None
+    high = thing.path is not None and hit is not None and hit.support is not None
+    alone = thing.support is None and thing.path is None and not thing.off and hit is None
+    falls = alone and "drop" in does and bool({"roll", "slide"} & does)
+    two = thing.path is not None and (thing.support is not None or thing.into is not None or thing.inside is not None)
     return (
+        (swung, "lets things hit what stands, not what hangs, as this is to:"),
+        (leans, "lets things hit what stands on the ground or a table, not what is on a ramp, as this is to:"),
+        (high, "lets what comes down a ramp hit what stands on the ground, but not this:"),
+        (thing.path is not None and "drop" in does, "lets things go on a ramp, and drops nothing onto it, such as"),
+        (falls, "lets things fall, or roll or slide, but not this one after the other:"),
+        (two, "lets what goes down a ramp go on along the ground, but not over or into what this is to:"),
         (goes, "puts nothing on what moves, hangs, or is on a ramp, a belt, a turntable or a seesaw, such as"),
         (thing.off and below is None and thing.path is None, "needs to be told off what this goes"),
         (thing.off and table and "drop" in does, "lets things roll or slide off a table, but not drop on it and leave"),

@@ -26,6 +26,7 @@ from wsim.sim.cameras import CameraRenderer
 from wsim.sim.devices import pick_device, steps_in_c
 from wsim.sim.entering import entered
 from wsim.sim.events import Events
+from wsim.sim.fluid_method import method_of, solids_of
 from wsim.sim.framing.frame import write_views
 from wsim.sim.framing.motion import MotionLog
 from wsim.sim.joint_paths import JointPathController
@@ -313,6 +314,8 @@ class Simulation:
         with ExitStack() as stack:
             stack.enter_context(phases.phase("record"))
             writer = stack.enter_context(RecordingWriter(recording, self.world, {**(metadata or {}), **self.facts()}))
+            if self.fluid:
+                writer.solids(solids_of(self.built, self.fluid, 0))
             pictures = None
             if video:
                 with phases.phase("prepare the camera"):
@@ -375,23 +378,8 @@ class Simulation:
             "controlled": self.controlled,
             "steered": self._steered,  # by the program's own control
             "speed_of_sound": self.built.sph.speed_of_sound if self.built.sph else None,
-            "sph": self.method_of_fluid(0),
+            "sph": method_of(self.built, self.fluid, 0) if self.fluid else None,
             "versions": {name: version(name) for name in ("newton", "warp-lang", "mujoco", "usd-core")},
-        }
-
-    def method_of_fluid(self, w: int) -> dict[str, Any] | None:
-        """What, beside the fluids' own numbers, their push on bodies of world w follows from; None without them."""
-        config = self.built.sph
-        if config is None or self.fluid is None:
-            return None
-        worlds = max(1, self.model.world_count)
-        counts = np.diff(self.fluid.body_first.numpy()).reshape(worlds, -1)[w, self.built.bodies].tolist()
-        return {
-            "smoothing_length": config.smoothing_length,
-            "artificial_viscosity": config.artificial_viscosity,
-            "laminar_factor": config.laminar_factor,
-            "background_pressure": config.background_pressure,
-            "body_particles": dict(zip((body.prim for body in self.world.bodies), counts, strict=True)),
         }
 
     def _summary(self) -> str:

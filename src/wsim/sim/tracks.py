@@ -9,6 +9,7 @@ import numpy as np
 
 from wsim.recording.trajectories import Trajectories
 from wsim.sim.body_tracks import BodyTracks
+from wsim.sim.fluid_method import method_of, solids_of
 from wsim.sim.fluid_tracks import FluidTracks
 from wsim.sim.ledger_tracks import LedgerTracks
 
@@ -66,6 +67,7 @@ class Tracks:
         """
         chosen = list(range(self.count)) if worlds is None else list(worlds)
         simulation, wet, pushed = self.simulation, self._wet, self._pushed
+        fluid = simulation.fluid
         q, qd, force, deepest = self.bodies.read(chosen) if self.bodies else self._none(len(chosen))
         mass = self._masses()
         scalars = self._scalars | (wet.scalars if wet else {}) | (pushed.scalars if pushed else {})
@@ -84,7 +86,8 @@ class Tracks:
             worlds=self._worlds(chosen),
             applied={name: values[chosen] for name, values in applied.items()},
             fluids=[wet.tracks[w] for w in chosen] if wet else (),
-            own_metadata=[{"sph": simulation.method_of_fluid(w)} for w in chosen] if wet else (),
+            solids=[solids_of(simulation.built, fluid, w) for w in chosen] if fluid else (),
+            own_metadata=[{"sph": method_of(simulation.built, fluid, w)} for w in chosen] if fluid else (),
         )
 
     def read_starts(self) -> Trajectories:

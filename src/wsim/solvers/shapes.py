@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 import warnings
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from newton import GeoType, ShapeFlags
+from scipy.spatial import cKDTree
 
 from wsim.geometry.filled import Samples, box_lattice, capsule_layers, cylinder_layers, sphere_layers
 from wsim.geometry.rotations import rotate
@@ -59,6 +61,15 @@ class Boundary:
     owner: Array  # (n,) body, or -1
     world: Array  # (n,)
     body_first: Array  # (body_count + 1,)
+
+    def crowd(self, reach: float) -> int:
+        """Most particles of one body within `reach` [m] of any of its own: many, where its shapes overlap."""
+        most = 0
+        for first, last in itertools.pairwise(self.body_first.tolist()):
+            if last > first:
+                own = self.local[first:last]
+                most = max(most, int(cKDTree(own).query_ball_point(own, reach, return_length=True).max()))
+        return most
 
 
 def sample_shape(kind: int, scale: Array, source: Any, spacing: float, plane: bool = False) -> Samples | None:

@@ -21,6 +21,7 @@ from wsim.solvers.sph_domain import domain_of
 from wsim.solvers.sph_faces import FixedFaces
 from wsim.solvers.sph_faults import in_words
 from wsim.solvers.sph_particles import SortedParticles
+from wsim.solvers.sph_push import BodyPush
 from wsim.solvers.sph_search import ParticleSearch
 
 LEAST_LANES = 32
@@ -143,6 +144,7 @@ class SolverSPH(SolverBase):
             solids.world[fixed:],
             self.wall_position,
             self.world_count,
+            solids.crowd((1.0 + self.config.skin) * self.config.support),
         )
         self.programs = self.search.programs
         self.faces = FixedFaces(model, self.world_count, containers)
@@ -152,7 +154,7 @@ class SolverSPH(SolverBase):
         self.pressure = wp.empty(self.fluid_count, dtype=float)
         self.body_position = wp.zeros(bodies, dtype=wp.vec3)
         self.body_velocity = wp.zeros(bodies, dtype=wp.vec3)
-        self.body_particle_force = wp.zeros(bodies, dtype=wp.vec3)
+        self.push = BodyPush(self.search, self.body_owner)
         self._gather_solid(walls, self.wall_position, wp.zeros(self.wall_count, dtype=wp.vec3), self.wall_volume)
         # As many lanes as each has particles of the largest body to add up, and add_body_wrench lanes.
         largest = int(np.diff(self.body_first.numpy()).max(initial=0))
@@ -167,8 +169,9 @@ class SolverSPH(SolverBase):
         self._wall_impulse = wp.zeros(self.world_count, dtype=wp.vec3d)
 
     def reset_search(self) -> None:
-        """Forget the neighbour lists; for a state that did not come from the last step."""
+        """Forget the neighbour lists, and the water in gaps; for a state that did not come from the last step."""
         self.search.stale = True
+        self.push.forget()
 
     def take_wall_impulse(self) -> np.ndarray:
         """Impulse that each world's fluid gave to all that stands still since the last call, (W, 3) [N s]."""
@@ -292,6 +295,7 @@ class SolverSPH(SolverBase):
             outputs=[fluid.point, fluid.motion],
         )
         self._gather_solid(self.search.bodies, self.body_position, self.body_velocity, self.body_volume)
+        self.push.gather()
 
     def _gather_solid(self, solid: SortedParticles, *arrays: wp.array) -> None:
         if solid.count:
@@ -331,7 +335,7 @@ class SolverSPH(SolverBase):
                 self.programs.extrapolate,
                 dim=solid.count,
                 inputs=[*method, self.viscosity, gravity, fluid, solid.species],
-                outputs=[solid.motion],
+                outputs=[solid.motion, solid.facing],
             )
 
     def _move_fluid(self, state_out: newton.State, dt: float) -> None:
@@ -339,13 +343,7 @@ class SolverSPH(SolverBase):
         search = self.search
         fluid, walls, bodies = (kind.species for kind in (search.fluid, search.walls, search.bodies))
         method = [search.grid, self.method, self.rest_density, self.viscosity]
-        if self.body_particle_count:
-            launch_shared(
-                self.programs.push,
-                dim=self.body_particle_count,
-                inputs=[*method, fluid, bodies],
-                outputs=[self.body_particle_force],
-            )
+        self.push.sum(self.method, self.rest_density, self.viscosity, self.model.gravity)
         launch_shared(
             self.programs.momentum,
             dim=self.fluid_count,
@@ -356,18 +354,24 @@ class SolverSPH(SolverBase):
             if self.faces.count and self.config.dimensions == 3:
                 at = state_out.particle_q, state_out.particle_qd
                 self.faces.keep_out(self.search.fluid.world, dt, *at, self._on_walls)
-            wp.launch(
-                boundary_kernels.sum_wall_lanes,
-                dim=self._wall_lanes.shape,
-                inputs=[self._on_walls, self._world_first, self._lanes_of_walls],
-                outputs=[self._wall_lanes],
-            )
-            wp.launch(
-                boundary_kernels.add_wall_impulse,
-                dim=self.world_count,
-                inputs=[self._wall_lanes, dt],
-                outputs=[self._wall_impulse],
-            )
+            self._add_to_walls(self._on_walls, self._world_first, dt)
+            if self.body_particle_count:
+                self._add_to_walls(self.push.on_walls, self.push.world_first, dt)
+
+    def _add_to_walls(self, force: wp.array, world_first: wp.array, dt: float) -> None:
+        """Add particles' forces on the walls, in the order of worlds, to the impulse on each world's."""
+        wp.launch(
+            boundary_kernels.sum_wall_lanes,
+            dim=self._wall_lanes.shape,
+            inputs=[force, world_first, self._lanes_of_walls],
+            outputs=[self._wall_lanes],
+        )
+        wp.launch(
+            boundary_kernels.add_wall_impulse,
+            dim=self.world_count,
+            inputs=[self._wall_lanes, dt],
+            outputs=[self._wall_impulse],
+        )
 
     def _return_wrenches(self, state_in: newton.State, state_out: newton.State) -> None:
         if not self.body_particle_count:
@@ -378,7 +382,7 @@ class SolverSPH(SolverBase):
             inputs=[
                 self.search.grid,
                 self.body_first,
-                self.body_particle_force,
+                self.push.force,
                 self.body_local,
                 state_in.body_q,
                 self.model.body_com,

@@ -8,7 +8,7 @@ import numpy as np
 import warp as wp
 
 from wsim.kernels.sph import grid as grid_kernels
-from wsim.kernels.sph.species import Species, mark_near
+from wsim.kernels.sph.species import BODIES, FLUID, Species, mark_near
 from wsim.solvers.sph_domain import blocks_of, cells_of
 
 
@@ -20,6 +20,7 @@ class SortedParticles:
         grid: The cells.
         world_count: Number of worlds.
         capacity: Neighbours that a list has room for; 0 where cells are walked.
+        kind: `FLUID`, `WALLS` or `BODIES`.
 
     Attributes:
         count: Number of particles n.
@@ -27,10 +28,11 @@ class SortedParticles:
         order: Original index of each sorted one, shape (n,).
         point: Position [m] and volume [m^3] of each sorted one, shape (n,).
         motion: Velocity [m/s] and pressure [Pa] of each sorted one, shape (n,).
+        facing: Of solids, as `across` and `handed` of bodies: see `Species`.
         species: What kernels take.
     """
 
-    def __init__(self, world: np.ndarray, grid: Any, world_count: int, capacity: int) -> None:
+    def __init__(self, world: np.ndarray, grid: Any, world_count: int, capacity: int, kind: int) -> None:
         n = self.count = len(world)
         cells = cells_of(grid) * world_count if n else 0
         self.grid, self.cells_per_world = grid, cells_of(grid)
@@ -49,6 +51,9 @@ class SortedParticles:
         self.species: Any = Species()
         self.species.order, self.species.world = self.order, self.world
         self.species.point, self.species.motion = self.point, self.motion
+        self.species.facing = self.facing = wp.zeros(0 if kind == FLUID else n, dtype=wp.vec4)
+        self.species.across = self.across = wp.zeros(n if kind == BODIES else 0, dtype=wp.vec4)
+        self.species.handed = self.handed = wp.zeros(n if kind == BODIES else 0, dtype=wp.vec4)
         self.species.cell_start, self.species.near = self.cell_start, self.near
         self.species.entry, self.species.capacity = wp.empty(n * capacity, dtype=int), capacity
         self.species.entry_count = wp.zeros(n if capacity else 0, dtype=wp.vec3i)

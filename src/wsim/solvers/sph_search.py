@@ -10,7 +10,7 @@ import warp as wp
 
 from wsim.kernels.sph import neighbors as neighbor_kernels
 from wsim.kernels.sph.programs import Programs
-from wsim.kernels.sph.species import BODIES, WALLS
+from wsim.kernels.sph.species import BODIES, FLUID, WALLS
 from wsim.solvers.launch import launch_shared
 from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.sph_domain import make_grid
@@ -34,6 +34,7 @@ class ParticleSearch:
         body_world: World of each particle of a body.
         wall_position: Where the walls' particles are [m].
         world_count: Number of worlds.
+        crowd: Most particles of its own body that any has within reach.
 
     Attributes:
         fluid, walls, bodies: The particles of each kind.
@@ -49,6 +50,7 @@ class ParticleSearch:
         body_world: np.ndarray,
         wall_position: wp.array,
         world_count: int,
+        crowd: int,
     ) -> None:
         self.cuda = wall_position.device.is_cuda
         self.skin = 0.0 if self.cuda else config.skin * config.support
@@ -56,7 +58,8 @@ class ParticleSearch:
         self.grid = make_grid(config, *domain, config.support + self.skin, self.cuda, world_count)
         capacity = 0 if self.cuda else _capacity(config, self.grid.support)
         self.fluid, self.walls, self.bodies = (
-            SortedParticles(world, self.grid, world_count, capacity) for world in (fluid_world, wall_world, body_world)
+            SortedParticles(world, self.grid, world_count, capacity and capacity + more, kind)
+            for world, more, kind in ((fluid_world, 0, FLUID), (wall_world, 0, WALLS), (body_world, crowd, BODIES))
         )
         self.moving = [kind for kind in (self.fluid, self.bodies) if kind.count]
         self.solid = [kind for kind in (self.walls, self.bodies) if kind.count]
@@ -132,15 +135,20 @@ class ParticleSearch:
             inputs=[self.grid, walls, bodies],
             outputs=[fluid, overflow],
         )
-        for kind in self.solid:
+        finders = self.programs.find
+        for kind, find, others in (
+            (self.walls, finders.of_walls, [fluid]),
+            (self.bodies, finders.of_bodies, [fluid, walls]),
+        ):
             first, last = kind.world_first[world : world + 2]
-            launch_shared(
-                self.programs.find.of_solid,
-                dim=last - first,
-                first=first,
-                inputs=[self.grid, fluid],
-                outputs=[kind.species, overflow],
-            )
+            if kind.count:
+                launch_shared(
+                    find,
+                    dim=last - first,
+                    first=first,
+                    inputs=[self.grid, *others],
+                    outputs=[kind.species, overflow],
+                )
         for kind, point_at_build in zip(self.moving, self.point_at_build, strict=True):
             first, last = kind.world_first[world : world + 2]
             wp.copy(point_at_build, kind.point, dest_offset=first, src_offset=first, count=last - first)

@@ -5,12 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.judge.checks.test_lift import EDGES, SOUND, SPACING, WATER, immersed, lifted
+from tests.judge.checks.test_lift import EDGES, INNER, SOUND, SPACING, WATER, immersed, lifted
 from tests.judge.theory import G, ask, ball, box, only, with_world
 from wsim.geometry.filled import box_lattice
-from wsim.judge.books.fluid_push import FluidPush, Method, filled
+from wsim.judge.books.filling import filled
+from wsim.judge.books.fluid_push import FluidPush
+from wsim.judge.books.gaps import FAR_ACROSS
+from wsim.judge.books.sph import Method
 from wsim.judge.checks.fluid_push import CheckFluidPush
 from wsim.judge.evidence.evidence import Evidence
+from wsim.recording.solids import SolidParticles, Solids
 from wsim.scene.world import Shape
 
 COUNT = 6 * 4 * 5  # particles that fill a box of EDGES
@@ -22,6 +26,14 @@ def told(recording, **method):
     facts = {"smoothing_length": H, "artificial_viscosity": 0.01, "laminar_factor": 10.0, "background_pressure": 0.0}
     counts = {body.prim: COUNT for body in recording.world.bodies}
     return replace(recording, metadata={**recording.metadata, "sph": {**facts, "body_particles": counts, **method}})
+
+
+def floored(recording, depth=3):
+    """A recording that says of what particles the tank's floor is: layers, half a spacing deep and more."""
+    layers = box_lattice(np.array([*INNER[:2], depth * SPACING]), SPACING)
+    place = layers.position - np.array([0.0, 0.0, 0.5 * depth * SPACING])
+    floor = SolidParticles(place.astype(np.float32), layers.volume.astype(np.float32))
+    return replace(recording, solids=Solids(floor))
 
 
 def pushes(recording, frames):
@@ -69,6 +81,80 @@ def test_the_force_of_one_particle_is_the_pairs():
     slope = 21.0 / (16.0 * np.pi * H**3) * 5.0 * q * (1.0 - q / 2.0) ** 3 / H  # -dW/dr
     cell = SPACING**3
     assert force == pytest.approx([0.0, 0.0, -cell * (1000.0 * cell / 1002.0) * (p + under) * slope], rel=1e-4)
+
+
+@pytest.mark.parametrize(("edges", "others"), [(EDGES, 0), ((0.2, 0.2, 0.1), 0), (EDGES, 1)])
+def test_water_lifts_what_lies_flush_on_the_floor(edges, others, monkeypatch):
+    """With the floor's particles it is the lift of Archimedes, of a box of ten particles a side, too, whose middle no
+    fluid is near, and of boxes on each other; without, as in recordings of before, the water presses it down."""
+    for name in ("tests.judge.checks.test_lift", __name__):
+        monkeypatch.setattr(f"{name}.EDGES", edges)
+    on_top = [np.array([0.0, 0.0, 1.5 * edges[2]])] * others
+    low = told(immersed(0.0, at=(0.0, 0.0), others=on_top), body_particles={
+        f"/World/box{n}": round(np.prod(edges) / SPACING**3) for n in range(others + 1)
+    })  # fmt: skip
+    force = push_on(floored(low))
+    assert force[:, 2] == pytest.approx(1000.0 * G * np.prod(edges), rel=0.03)
+    assert push_on(low)[0, 2] < 0.0
+
+
+def test_the_force_in_a_gap_is_the_pairs():
+    """Two particles of a box, one of a wall under them, one of fluid beside the lower, by hand.
+
+    Nothing but the wall holds the lower one up against the upper one: what it lacks is made up for.
+    """
+    recording = told(immersed(), body_particles={"/World/box0": 2})
+    small = with_world(recording, bodies=[box("box0", size=(SPACING, SPACING, 2.0 * SPACING))])
+    lower = small.body_q[:, 0, :3] - np.array([0.0, 0.0, 0.5 * SPACING])
+    water, thick = small.fluids[WATER], 2e-6  # [m^3]
+    rho = np.full((len(water.time), 1), 1002.0, dtype=np.float32)
+    aside = (lower + np.array([1.1 * SPACING, 0.0, 0.0]))[:, None].astype(np.float32)
+    wet = replace(small, fluids={WATER: replace(water, position=aside, velocity=0.0 * aside, density=rho)})
+
+    def with_wall(way):
+        wall = SolidParticles((lower[:1] + np.array(way) * SPACING).astype(np.float32), np.full(1, thick, np.float32))
+        return push_on(replace(wet, solids=Solids(wall)))[0] - push_on(wet)[0]
+
+    def slope(spacings):  # -dW/dr
+        q = spacings * SPACING / H
+        return 21.0 / (16.0 * np.pi * H**3) * 5.0 * q * (1.0 - q / 2.0) ** 3 / H
+
+    p, cell = SOUND**2 * 2.0, SPACING**3
+    own, other = cell * slope(1.0), thick * slope(1.7)
+    longer = own * other / (other**2 + FAR_ACROSS**2 * own**2)
+    up = longer * cell * other * (2.0 * p + 1000.0 * G * 1.7 * SPACING)
+    assert longer > 5.0
+    assert with_wall((0.0, 0.0, -1.7)) == pytest.approx([0.0, 0.0, up], rel=1e-3, abs=1e-6 * up)
+    # Of one with its fluid behind the other, of one out of reach of all fluid, and of one out of the body's reach.
+    for way in ((1.05, 0.0, 0.0), (-1.6, 0.0, 0.0), (2.7, 0.0, 0.0)):
+        assert np.abs(with_wall(way)).max() < 1e-6 * up
+
+
+@pytest.mark.parametrize("by", [(0, 0, 0.0), (0, 0, 0.2), (0, 0, -0.2), (0.1, 0, 0)])
+def test_what_is_off_near_the_floor_is_found(by):
+    recording = floored(told(immersed(0.008, at=(0.0, 0.0), frames=14)))
+    assert only(ask(CheckFluidPush(), agreeing(recording, by))).passed == (not any(by))
+
+
+def test_what_the_floor_is_said_to_push_without_water_is_found():
+    """The gap's push of a recording whose floor is out of reach: nothing explains it."""
+    near, far = (floored(told(immersed(height, at=(0.0, 0.0), frames=14))) for height in (0.008, 0.14))
+    gap = pushes(near, [0])[0, 0, 2] - pushes(replace(near, solids=None), [0])[0, 0, 2]
+    wrong = agreeing(far, (0, 0, gap / pushes(far, [0])[0, 0, 2]))
+    assert not only(ask(CheckFluidPush(), wrong)).passed
+
+
+def test_a_mesh_is_filled_as_the_recording_says():
+    recording = told(immersed(frames=14))
+    lattice = box_lattice(np.array(EDGES), SPACING)
+    own = SolidParticles(lattice.position.astype(np.float32), lattice.volume.astype(np.float32))
+    walls = SolidParticles(np.zeros((0, 3), np.float32), np.zeros(0, np.float32))
+    mesh = Shape(prim="/World/box0/g", kind="mesh", size=EDGES)
+    body = recording.world.bodies[0].model_copy(update={"shapes": [mesh]})
+    bent = replace(with_world(recording, bodies=[body]), solids=Solids(walls, {body.prim: own}))
+    assert push_on(bent) == pytest.approx(push_on(recording), rel=1e-5, abs=1e-4)
+    assert only(ask(CheckFluidPush(), agreeing(bent))).passed
+    assert not only(ask(CheckFluidPush(), agreeing(bent, (0, 0, 0.1)))).passed
 
 
 @pytest.mark.parametrize("by", [(0, 0, 0.03), (0, 0, -0.03), (0.03, 0, 0), (0, -0.03, 0)])

@@ -6,15 +6,15 @@ fill the body (Adami, Hu & Adams 2012; docs/sph.md):
     F = sum_b V_b sum_f V_f ( (A + K mu) v_bf . x_bf / (r^2 + 1e-4 h^2) - p_b - p_f ) grad W
 
 with p_b and v_b taken from the fluid near b, A = alpha h c rho_0 between what approaches each other and K mu between
-all. All that it takes is in a recording: places, velocities and densities of the fluid's particles, poses of bodies,
-and the settings of the method. How particles fill a body follows from its shape. So the force that a recording says
-that a fluid gave can be held against the one that its own particles give, of bodies of any size, anywhere, near the
-floor and near each other, without what SPH and real water differ by.
+all; and what the water in gaps gives beside it (`wsim.judge.books.gaps`). All that it takes is in a recording: places,
+velocities and densities of the fluid's particles, poses of bodies, the settings of the method, and the particles of
+solids. How particles fill a body follows from its shape, or the recording says it of a mesh. So the force that a
+recording says that a fluid gave can be held against the one that its own particles give, of bodies of any size,
+anywhere, near the floor and near each other, without what SPH and real water differ by.
 """
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -22,9 +22,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.spatial import cKDTree
 
-from wsim.geometry.filled import Samples, box_lattice, capsule_layers, cylinder_layers, sphere_layers
+from wsim.geometry.filled import Samples
 from wsim.geometry.rotations import rotate
+from wsim.judge.books.filling import filled
 from wsim.judge.books.fluids import particle_mass
+from wsim.judge.books.gaps import WALL, Solid, forces_in_gaps
+from wsim.judge.books.sph import Method, Particles, Taken, joined, own_gradient, pairs_within, taken
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,94 +35,21 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
-    from wsim.scene.world import Body, Shape
+    from wsim.recording.solids import SolidParticles
 
     Floats = NDArray[np.float64]
 
-TIE = 1e-6  # share of a length: one that is half a spacing more than so many may round either way
-AT_ONCE = 2000  # particles of a body, whose pairs fit into memory
 COINCIDENT = 1e-4  # of h^2, as the method adds it to r^2
 
 
-def filled(body: Body, spacing: float, count: int) -> Samples | None:
-    """As many particles as the simulator says that it filled a body with, in its frame; None where shapes tell others.
-
-    Args:
-        body: Of round shapes and boxes; a mesh's particles are spread by a search, which is not repeated here.
-        spacing: Between the fluid's particles [m].
-        count: How many there are.
-    """
-    choices = [_fillings(shape, spacing) for shape in body.shapes if shape.collides]
-    for choice in itertools.islice(itertools.product(*choices), 64):
-        if choice and sum(len(each.volume) for each in choice) == count:
-            return Samples(
-                *(np.concatenate(parts) for parts in zip(*((c.position, c.volume) for c in choice), strict=True))
-            )
-    return None
-
-
-def _fillings(shape: Shape, spacing: float) -> list[Samples]:
-    """Of one shape; several where a length may be rounded up or down to spacings."""
-    found: dict[tuple[int, ...], Samples] = {}
-    for by in itertools.product((1.0, 1.0 + TIE, 1.0 - TIE), repeat=len(shape.size)):
-        size = np.array(shape.size) * by
-        cells = tuple(round(2.0 * length / spacing) for length in size), *(round(length / spacing) for length in size)
-        if cells not in found and (samples := _filling(shape.kind, size, spacing)) is not None:
-            place = rotate(np.array(shape.rotation), samples.position) + np.array(shape.position)
-            found[cells] = Samples(place, samples.volume)
-    return list(found.values())
-
-
-def _filling(kind: str, size: Floats, spacing: float) -> Samples | None:
-    if kind == "box":
-        return box_lattice(size, spacing)
-    if kind == "sphere":
-        return sphere_layers(float(size[0]), spacing)
-    if kind == "cylinder":
-        return cylinder_layers(float(size[0]), 0.5 * float(size[1]), spacing)
-    return capsule_layers(float(size[0]), 0.5 * float(size[1]), spacing) if kind == "capsule" else None
-
-
 @dataclass(frozen=True)
-class Method:
-    """Settings of the SPH that a recording was made with, and its fluids' common numbers."""
+class Carried:
+    """The particles of a solid at a frame."""
 
-    h: float  # smoothing length [m]
-    sound: float  # [m/s]
-    density: float  # at rest [kg/m^3]
-    artificial: float  # alpha h c rho_0 [Pa s]
-    laminar: float  # K mu [Pa s]
-    background: float  # pressure [Pa]
-    gravity: Floats  # (3,) [m/s^2]
-
-    @staticmethod
-    def of(evidence: Evidence) -> Method | None:
-        """What a recording says; None where it does not."""
-        facts: Any = evidence.recording.metadata.get("sph")
-        fluid = evidence.world.fluids[0]
-        sound = fluid.speed_of_sound or float(evidence.recording.metadata.get("speed_of_sound") or 0.0)
-        if not facts or sound <= 0.0:
-            return None
-        h = float(facts["smoothing_length"])
-        return Method(
-            h, sound, fluid.density, float(facts["artificial_viscosity"]) * h * sound * fluid.density,
-            float(facts["laminar_factor"]) * fluid.viscosity, float(facts["background_pressure"]),
-            np.array(evidence.world.gravity),
-        )  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Particles:
-    """All fluids' at one frame."""
-
-    place: Floats  # (N, 3) [m]
-    velocity: Floats  # (N, 3) [m/s]
-    pressure: Floats  # (N,) [Pa]
-    volume: Floats  # (N,) [m^3]
-
-    def part(self, rows: NDArray[np.intp]) -> Particles:
-        """Some of them."""
-        return Particles(self.place[rows], self.velocity[rows], self.pressure[rows], self.volume[rows])
+    place: Floats  # (n, 3) [m]
+    volume: Floats  # (n,) [m^3]
+    velocity: Floats  # (n, 3) [m/s]
+    gradient: Floats  # (n, 3) sum of V grad W of each over the others of the same body [1/m]
 
 
 class FluidPush:
@@ -134,14 +64,27 @@ class FluidPush:
                 for f, t in zip(evidence.world.fluids, self._tracks, strict=True)
             ]
         )
-        counts = evidence.recording.metadata["sph"]["body_particles"]
-        spacing = evidence.world.fluids[0].spacing
-        self.filled = [filled(body, spacing, int(counts.get(body.prim, 0))) for body in evidence.world.bodies]
+        self.filled = _filled(evidence)
+        solids = evidence.recording.solids
+        self._walls = _in_double(solids.walls) if solids else None
+        none = np.zeros((0, 3))
+        self._gradients = [
+            none if each is None or not solids else own_gradient(method, each.position, each.volume)
+            for each in self.filled
+        ]
 
     def at(self, k: int, frame: int, bodies: Sequence[int]) -> Floats:
         """Force on each of some bodies [N], (len(bodies), 3), at the fluids' frame k, the recording's `frame`."""
         fluid = self._particles(k)
-        return np.array([self._on(i, frame, fluid) for i in bodies]).reshape(-1, 3)
+        carried = {i: self._carried(i, frame, each) for i, each in enumerate(self.filled) if each is not None}
+        wanted = [i for i in (bodies if self._walls is None else carried) if i in carried]
+        forces = np.full((len(self.filled), 3), math.nan)
+        found = {}
+        for i in wanted:
+            forces[i], found[i] = self._in_fluid(carried[i], fluid)
+        if self._walls is not None and wanted:
+            forces += forces_in_gaps(self._method, self._solid(self._walls, carried, found, fluid), len(self.filled))
+        return forces[list(bodies)]
 
     def _particles(self, k: int) -> Particles:
         place, velocity, density = (
@@ -151,53 +94,70 @@ class FluidPush:
         pressure = self._method.sound**2 * (density - self._method.density)
         return Particles(place, velocity, pressure, self._mass / density)
 
-    def _on(self, i: int, frame: int, fluid: Particles) -> Floats:
-        samples = self.filled[i]
-        if samples is None:
-            return np.full(3, math.nan)
+    def _in_fluid(self, body: Carried, fluid: Particles) -> tuple[Floats, Taken]:
+        """What fluid that is near a body gives it, (3,) [N], and what its particles take from it."""
+        reach, place = self._method.reach, body.place
+        near = fluid.about(place.min(axis=0) - reach, place.max(axis=0) + reach)
+        tree, total, parts = cKDTree(near.place), np.zeros(3), []
+        for part, pairs in pairs_within(tree, place, reach):
+            parts.append(taken(self._method, near, place[part], pairs))
+            total += self._force(near, place[part], body.velocity[part], body.volume[part], parts[-1], pairs)
+        return total, joined(parts)
+
+    def _solid(self, walls: Samples, carried: dict[int, Carried], found: dict[int, Taken], fluid: Particles) -> Solid:
+        """All bodies that have particles, and the walls within their reach."""
+        reach, near = self._method.reach, np.zeros(len(walls.volume), dtype=bool)
+        for body in carried.values():
+            low, high = body.place.min(axis=0) - reach, body.place.max(axis=0) + reach
+            near |= ((walls.position >= low) & (walls.position <= high)).all(axis=1)
+        place = walls.position[near]
+        standing = Carried(place, walls.volume[near], np.zeros_like(place), np.zeros_like(place))
+        of_walls = self._in_fluid(standing, fluid)[1] if len(place) else joined([])
+        solids, takes = [*carried.values(), standing], [*(found[i] for i in carried), of_walls]
+        owner = np.repeat([*carried, WALL], [len(each.volume) for each in solids])
+        place, volume, gradient = (
+            np.concatenate([getattr(each, name) for each in solids]) for name in ("place", "volume", "gradient")
+        )
+        return Solid(place, volume, owner, gradient, joined(takes))
+
+    def _carried(self, i: int, frame: int, samples: Samples) -> Carried:
         q = self._evidence.body_q[frame, i].astype(np.float64)
         qd = self._evidence.recording.body_qd[frame, i].astype(np.float64)
-        place = q[:3] + rotate(q[3:], samples.position)
         arm = rotate(q[3:], samples.position - np.array(self._evidence.world.bodies[i].com))
-        velocity = qd[:3] + np.cross(qd[3:], arm)
-        reach = 2.0 * self._method.h
-        about = (fluid.place >= place.min(axis=0) - reach) & (fluid.place <= place.max(axis=0) + reach)
-        fluid = fluid.part(np.flatnonzero(about.all(axis=1)))
-        tree, total = cKDTree(fluid.place), np.zeros(3)
-        for start in range(0, len(place), AT_ONCE):
-            part = slice(start, start + AT_ONCE)
-            pairs = cKDTree(place[part]).sparse_distance_matrix(tree, reach, output_type="ndarray")
-            if len(pairs):
-                total += self._force(fluid, place[part], velocity[part], samples.volume[part], pairs)
-        return total
+        place, velocity = q[:3] + rotate(q[3:], samples.position), qd[:3] + np.cross(qd[3:], arm)
+        return Carried(place, samples.volume, velocity, rotate(q[3:], self._gradients[i]))
 
-    def _force(self, fluid: Particles, place: Floats, velocity: Floats, volume: Floats, pairs: Any) -> Floats:
+    def _force(
+        self, fluid: Particles, place: Floats, velocity: Floats, volume: Floats, solid: Taken, pairs: Any
+    ) -> Floats:
         m, b, f = self._method, pairs["i"], pairs["j"]
         way = place[b] - fluid.place[f]
-        r2 = pairs["v"] ** 2
-        u = np.minimum(pairs["v"] / (2.0 * m.h), 1.0)
-        pressure, mirrored = self._taken(fluid, velocity, b, f, way, (1.0 - u) ** 4 * (1.0 + 4.0 * u))
+        mirrored = self._mirrored(velocity, solid)
         approach = np.einsum("ij,ij->i", mirrored[b] - fluid.velocity[f], way)
-        viscous = np.where(approach < 0.0, m.artificial + m.laminar, m.laminar) * approach / (r2 + COINCIDENT * m.h**2)
-        slope = -5.0 * 21.0 / (16.0 * math.pi * m.h**5) * (1.0 - u) ** 3  # of Wendland's (1995) C2 kernel, over r
-        size = volume[b] * fluid.volume[f] * slope * (viscous - pressure[b] - fluid.pressure[f] - 2.0 * m.background)
+        viscous = np.where(approach < 0.0, m.artificial + m.laminar, m.laminar)
+        viscous = viscous * approach / (pairs["v"] ** 2 + COINCIDENT * m.h**2)
+        pressure = solid.pressure[b] + fluid.pressure[f] + 2.0 * m.background
+        size = volume[b] * fluid.volume[f] * m.slope(pairs["v"]) * (viscous - pressure)
         return np.asarray(size @ way, dtype=np.float64)
 
-    def _taken(
-        self, fluid: Particles, velocity: Floats, b: NDArray[np.intp], f: NDArray[np.intp], way: Floats, weight: Floats
-    ) -> tuple[Floats, Floats]:
-        """Pressure (n,) and mirrored velocity (n, 3) that particles of a body take from the fluid near them."""
-        m, n = self._method, len(velocity)
-
-        def summed(values: Floats) -> Floats:
-            columns = values.reshape(len(b), -1).T
-            return np.stack([np.bincount(b, weight * column, n) for column in columns], axis=1)
-
-        total = np.maximum(summed(np.ones(len(b))), 1e-300)
-        pressure = (summed(fluid.pressure[f] + m.density * (way @ m.gravity)) / total)[:, 0]
-        past = summed(fluid.velocity[f]) / total - velocity
-        outward = -summed(way)
-        outward /= np.maximum(np.linalg.norm(outward, axis=1), 1e-300)[:, None]
-        slip = past - 2.0 * np.einsum("ij,ij->i", past, outward)[:, None] * outward
+    def _mirrored(self, velocity: Floats, solid: Taken) -> Floats:
+        """The velocity (n, 3) that the fluid meets in particles of a body: its own, mirrored."""
+        m, past = self._method, solid.velocity - velocity
+        slip = past - 2.0 * np.einsum("ij,ij->i", past, solid.facing)[:, None] * solid.facing
         share = m.artificial / max(m.artificial + m.laminar, 1e-300)
-        return np.maximum(pressure, -m.background), velocity + share * slip - (1.0 - share) * past
+        return np.asarray(velocity + share * slip - (1.0 - share) * past, dtype=np.float64)
+
+
+def _in_double(particles: SolidParticles) -> Samples:
+    return Samples(particles.position.astype(np.float64), particles.volume.astype(np.float64))
+
+
+def _filled(evidence: Evidence) -> list[Samples | None]:
+    """The particles of each body: as its shapes are filled, or, where that is not known, as a recording says."""
+    counts = evidence.recording.metadata["sph"]["body_particles"]
+    told = evidence.recording.solids.bodies if evidence.recording.solids else {}
+    found: list[Samples | None] = []
+    for body in evidence.world.bodies:
+        samples = filled(body, evidence.world.fluids[0].spacing, int(counts.get(body.prim, 0)))
+        found.append(_in_double(told[body.prim]) if samples is None and body.prim in told else samples)
+    return found

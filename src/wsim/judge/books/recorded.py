@@ -128,19 +128,25 @@ class RecordedContacts:
         """The coefficient of each row's pair, (n,)."""
         return self._law[0]
 
+    @property
+    def spread(self) -> Floats:
+        """How far the coefficient is from that within the interval, (n,): presses weigh a schedule's as they come."""
+        return self._law[2]
+
     @cached_property
     def _law(self) -> Floats:
-        """Friction and rolling resistance of each row's pair, (2, n)."""
+        """Friction, rolling resistance and what friction is off its mean, of each row's pair, (3, n)."""
         world = self._evidence.world
         pairs, which = np.unique(self.track.pair, axis=0, return_inverse=True)
         laws = [pair_law(world, self.shapes[a], self.shapes[b]) for a, b in pairs.tolist()]
-        each = np.array([(law.friction, law.rolling) for law in laws], dtype=np.float64).reshape(-1, 2)
+        each = np.array([(law.friction, law.rolling, 0.0) for law in laws], dtype=np.float64).reshape(-1, 3)
         found = each[which.ravel()].T
         for k, (a, b) in enumerate(pairs.tolist() if world.schedules else ()):
             by_time = friction(self._evidence, self.shapes[a], self.shapes[b], laws[k].friction)
             rows = np.flatnonzero(which.ravel() == k)
             if by_time is not None and len(rows):
-                found[0, rows] = by_time[np.maximum(self.track.frame[rows] - 1, 0)]
+                interval = np.maximum(self.track.frame[rows] - 1, 0)
+                found[0, rows], found[2, rows] = by_time.means[interval, 0], by_time.spread[interval, 0]
         return np.asarray(found)
 
     def rubs(self, normal: Floats, speed: Floats) -> Floats:
@@ -150,7 +156,7 @@ class RecordedContacts:
             normal: Of each row, (n, 3).
             speed: Of its slip at both ends, (n, 2) [m/s], known to within `rolled`.
         """
-        friction, rolling = self._law
+        friction, rolling, _ = self._law
         if not rolling.any():
             return np.stack([friction, friction])
         found = [self._shares(normal, speed[:, end], end, rolling) for end in (0, 1)]

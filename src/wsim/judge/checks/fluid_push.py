@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.special import stdtrit
 
-from wsim.judge.books.fluid_push import FluidPush, Method
+from wsim.judge.books.fluid_push import FluidPush
 from wsim.judge.books.fluids import fluid_impulse
+from wsim.judge.books.sph import Method
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.verdict import RepairTarget
 

@@ -95,14 +95,17 @@ class CheckRecordedForces(Check):
         pressed = contacts.track.pressed.astype(np.float64)
         unit = np.maximum(np.abs(pressed), 1e-30)
         turned = np.linalg.norm(contacts.track.along.astype(np.float64), axis=1) - pressed
-        over = np.maximum(contacts.rubbed - contacts.friction * pressed, np.maximum(turned, -pressed)) / unit
+        over = (
+            np.maximum(contacts.rubbed - (contacts.friction + contacts.spread) * pressed, np.maximum(turned, -pressed))
+            / unit
+        )
         k = int(np.argmax(over))
         return self._of_row(
             evidence, contacts, k,
             f"rub with {contacts.rubbed[k] / unit[k]:.3g} of what they press; their friction is "
             f"{contacts.friction[k]:.3g}",
             float(contacts.rubbed[k] / unit[k] if pressed[k] > 0.0 else np.inf),
-            float(contacts.friction[k] + self.cone), "1",
+            float(contacts.friction[k] + contacts.spread[k] + self.cone), "1",
             "Every recorded contact pushes, and rubs inside its friction's cone",
             f"the pair's friction, and {self.cone:g} for the solver",
         )  # fmt: skip
@@ -141,7 +144,9 @@ class CheckRecordedForces(Check):
         )
         turned = contacts.swing(normal, speed.min(axis=1))[rows]
         round_ = 1.0 - np.sqrt(1.0 - aside[rows] ** 2)
-        slack = (self.edge + 1.0 - cosine[rows] + 0.5 * turned**2 + round_) * friction + self.cone
+        slack = (
+            (self.edge + 1.0 - cosine[rows] + 0.5 * turned**2 + round_) * friction + contacts.spread[rows] + self.cone
+        )
         given = np.clip(rubs, least, most)
         worst = int(np.argmax(np.abs(rubs - given) / slack))
         k, value, expected, limit = int(rows[worst]), float(rubs[worst]), float(given[worst]), float(slack[worst])

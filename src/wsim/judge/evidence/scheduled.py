@@ -44,6 +44,7 @@ class ByTime:
 
     at: Floats  # (T, n) at each frame; from a key on its own
     means: Floats  # (T - 1, n) over each interval
+    spread: Floats  # (T - 1, n) how far it is from that mean within the interval, at most
     jumps: Bools  # (T - 1,) whether a key is within an interval, or at its end
 
     @staticmethod
@@ -54,14 +55,19 @@ class ByTime:
         begin, profile = begin_of(evidence, schedule), schedule.profile
         if begin is None:
             still = np.zeros(max(len(time) - 1, 0), dtype=bool)
-            return ByTime(np.tile(base, (len(time), 1)), np.tile(base, (len(still), 1)), still)
+            means = np.tile(base, (len(still), 1))
+            return ByTime(np.tile(base, (len(time), 1)), means, np.zeros_like(means), still)
         own = time - begin
         first = profile.times[0]
         at = np.where((own >= first - ROUNDING)[:, None], profile.at(own + ROUNDING), base)
         waits = np.clip(first - own, 0.0, None)
         sums = profile.sum_to(own) - base * waits[:, None]
         keys = (profile.times > own[:-1, None] + ROUNDING) & (profile.times <= own[1:, None] + ROUNDING)
-        return ByTime(at, np.diff(sums, axis=0) / np.diff(time)[:, None], np.asarray(keys.any(axis=1)))
+        means = np.diff(sums, axis=0) / np.diff(time)[:, None]
+        before = profile.at(own[1:] - ROUNDING)  # of a step at an interval's end that it comes from
+        before = np.where((own[1:] >= first - ROUNDING)[:, None], before, base)
+        spread = np.max(np.abs(np.stack([at[:-1], at[1:], before]) - means), axis=0)
+        return ByTime(at, means, spread, np.asarray(keys.any(axis=1)))
 
 
 @dataclass(frozen=True)
@@ -199,10 +205,10 @@ def roughest(world: World, one: Shape, other: Shape, stated: float) -> float:
     return max([stated, *(value[0] for each in own for value in each.values)])
 
 
-def friction(evidence: Recorded, one: Shape, other: Shape, stated: float) -> Floats | None:
-    """The friction of a pair of surfaces over each interval, (T - 1,); None where no schedule changes it."""
+def friction(evidence: Recorded, one: Shape, other: Shape, stated: float) -> ByTime | None:
+    """The friction of a pair of surfaces by time, of one column; None where no schedule changes it."""
     pair = stated_pair(evidence.world, one.prim, other.prim) if evidence.world.schedules else None
     for each in evidence.world.schedules:
         if pair is not None and each.target == pair.prim:
-            return ByTime.of(evidence, each, (stated,)).means[:, 0]
+            return ByTime.of(evidence, each, (stated,))
     return None

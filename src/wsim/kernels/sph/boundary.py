@@ -6,7 +6,7 @@ from wsim.kernels.sph.density import Method
 from wsim.kernels.sph.grid import Grid, in_plane, wrap
 from wsim.kernels.sph.pair_sums import PairSums
 from wsim.kernels.sph.records import load_record
-from wsim.kernels.sph.species import Species
+from wsim.kernels.sph.species import DRY, Species
 
 TINY = wp.constant(1.0e-30)
 
@@ -104,6 +104,8 @@ def make_extrapolate(sums: PairSums) -> wp.Kernel:
         solid: Species,
         # Data in and out:
         motion: wp.array(dtype=wp.vec4),
+        # Data out:
+        facing: wp.array(dtype=wp.vec4),
     ):
         """Pressure and velocity of each solid particle from the fluid near it (Adami et al. 2012, eqs. 23, 27).
 
@@ -117,7 +119,8 @@ def make_extrapolate(sums: PairSums) -> wp.Kernel:
         into the wall alone: a boundary layer of that viscosity, centimetres thick, would drag on bodies and load
         them with water. Both forms are linear in v_b, so that its mean, weighted with the viscosities, serves both.
 
-        `motion` is that of the solid: its own velocity comes in, the mirrored one and the pressure go out.
+        `motion` is that of the solid: its own velocity comes in, the mirrored one and the pressure go out; `DRY` where
+        no fluid is near. `facing` gets the way to the fluid.
         """
         s = first + wp.tid()
         p = load_record(solid.point, s)
@@ -129,7 +132,8 @@ def make_extrapolate(sums: PairSums) -> wp.Kernel:
         total = of_fluid(grid, solid, fluid, s, world, method.shape, x, at_rest, 0.0, weight_of_water)
         m = motion[s]
         if total[0] <= 0.0:
-            motion[s] = wp.vec4(m[0], m[1], m[2], 0.0)
+            motion[s] = wp.vec4(m[0], m[1], m[2], DRY)
+            facing[s] = wp.vec4(0.0, 0.0, 0.0, 0.0)
         else:
             pressure = wp.max(total[1] / total[0], -method.background_pressure)
             own = wp.vec3(m[0], m[1], m[2])
@@ -139,6 +143,7 @@ def make_extrapolate(sums: PairSums) -> wp.Kernel:
             share = artificial / wp.max(artificial + laminar, TINY)
             v = own + share * slip - (1.0 - share) * past
             motion[s] = wp.vec4(v[0], v[1], v[2], pressure)
+            facing[s] = wp.vec4(normal[0], normal[1], normal[2], 0.0)
 
     return extrapolate
 

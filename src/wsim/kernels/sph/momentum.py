@@ -1,4 +1,4 @@
-"""Momentum equation, the step of velocity and position, and the fluid's push on bodies."""
+"""Momentum equation, and the step of velocity and position."""
 
 import warp as wp
 
@@ -16,7 +16,7 @@ ON_FACE = wp.constant(0.5)
 
 
 @wp.func
-def _viscosities(method: Method, rest_density: float, viscosity: float) -> wp.vec3:
+def viscosities(method: Method, rest_density: float, viscosity: float) -> wp.vec3:
     """Artificial and laminar factor of a pair's approach, and what is added to r^2."""
     artificial = method.artificial_viscosity * method.h * method.speed_of_sound * rest_density
     return wp.vec3(artificial, method.laminar_factor * viscosity, COINCIDENT * method.h * method.h)
@@ -81,7 +81,7 @@ def make_momentum(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         x = wp.vec3(p[0], p[1], p[2])
         v = wp.vec3(m[0], m[1], m[2])
         world = fluid.world[i]
-        viscous = _viscosities(method, rest_density[world], viscosity[world])
+        viscous = viscosities(method, rest_density[world], viscosity[world])
         own = m[3] + 2.0 * method.background_pressure
         total = of_fluid(grid, fluid, fluid, s, world, method.shape, x, v, own, viscous)
         at_walls = AtWalls()
@@ -101,35 +101,3 @@ def make_momentum(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         position[i] = wrap(grid, x + dt * v)
 
     return momentum
-
-
-def make_push(sums: PairSums) -> wp.Kernel:
-    """The kernel that sums the fluid's forces on the particles of bodies."""
-    of_fluid = sums.force[FLUID]
-
-    @wp.kernel(**sums.options)
-    def push(
-        # Data in:
-        first: int,
-        grid: Grid,
-        method: Method,
-        rest_density: wp.array(dtype=float),
-        viscosity: wp.array(dtype=float),
-        fluid: Species,
-        bodies: Species,
-        # Data out:
-        force: wp.array(dtype=wp.vec3),
-    ):
-        """The fluid's force on each particle of a body [N], in original order: the opposite of what the fluid feels."""
-        s = first + wp.tid()
-        p = load_record(bodies.point, s)
-        m = load_record(bodies.motion, s)
-        x = wp.vec3(p[0], p[1], p[2])
-        v = wp.vec3(m[0], m[1], m[2])
-        i = bodies.order[s]
-        world = bodies.world[i]
-        viscous = _viscosities(method, rest_density[world], viscosity[world])
-        own = m[3] + 2.0 * method.background_pressure
-        force[i] = p[3] * of_fluid(grid, bodies, fluid, s, world, method.shape, x, v, own, viscous)
-
-    return push

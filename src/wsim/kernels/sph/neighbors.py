@@ -16,10 +16,11 @@ from wsim.kernels.sph.species import BODIES, WALLS, Species
 
 @dataclass(frozen=True)
 class Finders:
-    """The kernels that make the lists of fluid particles and of solid ones."""
+    """The kernels that make the lists of the particles of each kind."""
 
     of_fluid: wp.Kernel
-    of_solid: wp.Kernel
+    of_walls: wp.Kernel
+    of_bodies: wp.Kernel
 
 
 def make_finders(sums: PairSums, solids: tuple[int, ...]) -> Finders:
@@ -62,20 +63,47 @@ def make_finders(sums: PairSums, solids: tuple[int, ...]) -> Finders:
         grid: Grid,
         fluid: Species,
         # Data in and out (lists are written):
-        solid: Species,
+        walls: Species,
         # Data out:
         overflow: wp.array(dtype=int),
     ):
-        """List the fluid near each solid particle."""
+        """List the fluid near each particle of a wall."""
         s = first + wp.tid()
-        p = load_record(solid.point, s)
+        p = load_record(walls.point, s)
         x = wp.vec3(p[0], p[1], p[2])
-        total = find(grid, solid, fluid, s, solid.world[solid.order[s]], x, -1, 0)
-        if total > solid.capacity:
+        total = find(grid, walls, fluid, s, walls.world[walls.order[s]], x, -1, 0)
+        if total > walls.capacity:
             wp.atomic_max(overflow, 0, total)
-        solid.entry_count[s] = wp.vec3i(wp.min(total, solid.capacity), 0, 0)
+        walls.entry_count[s] = wp.vec3i(wp.min(total, walls.capacity), 0, 0)
 
-    return Finders(find_neighbors, find_fluid)
+    @wp.kernel(**sums.options)
+    def find_all(
+        # Data in:
+        first: int,
+        grid: Grid,
+        fluid: Species,
+        walls: Species,
+        # Data in and out (lists are written):
+        bodies: Species,
+        # Data out:
+        overflow: wp.array(dtype=int),
+    ):
+        """List the neighbours of each particle of a body: fluid, walls, and its own kind, itself left out."""
+        s = first + wp.tid()
+        p = load_record(bodies.point, s)
+        x = wp.vec3(p[0], p[1], p[2])
+        world = bodies.world[bodies.order[s]]
+        to_fluid = find(grid, bodies, fluid, s, world, x, -1, 0)
+        to_walls = to_fluid
+        if wp.static(WALLS in solids):
+            to_walls = find(grid, bodies, walls, s, world, x, -1, to_fluid)
+        total = find(grid, bodies, bodies, s, world, x, s, to_walls)
+        if total > bodies.capacity:
+            wp.atomic_max(overflow, 0, total)
+        to_fluid, to_walls = wp.min(to_fluid, bodies.capacity), wp.min(to_walls, bodies.capacity)
+        bodies.entry_count[s] = wp.vec3i(to_fluid, to_walls - to_fluid, wp.min(total, bodies.capacity) - to_walls)
+
+    return Finders(find_neighbors, find_fluid, find_all)
 
 
 @wp.kernel(enable_backward=False)

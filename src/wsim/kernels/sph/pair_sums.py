@@ -15,9 +15,10 @@ from typing import Any
 
 import warp as wp
 
+from wsim.kernels.sph.gap_sums import ACROSS, BEYOND, GAP, GRADIENT, SEEPING, WAY, between
 from wsim.kernels.sph.grid import Grid
 from wsim.kernels.sph.rows import walk
-from wsim.kernels.sph.species import BODIES, FLUID, WALLS, Species
+from wsim.kernels.sph.species import BODIES, DRY, FLUID, WALLS, Species
 
 BLOCK = 128  # threads of a CUDA block; 3 % quicker than 256 for sums over neighbours, on an H200
 
@@ -26,6 +27,10 @@ Flux = wp.vec3
 
 # Force per volume (3), sum of V W, and the way out of the wall (3), up to a factor.
 AtWalls = wp.types.vector(length=7, dtype=wp.float32)
+
+# Force per volume (3) of others across a gap, how many there are, wet or dry, their sum of V grad W (3), and that over
+# the same body (3).
+Gap = wp.types.vector(length=10, dtype=wp.float32)
 
 # Sums of W, of W times pressure, of W times velocity (3), and of W times the way to the fluid (3).
 Extrapolated = wp.types.vector(length=8, dtype=wp.float32)
@@ -55,7 +60,7 @@ _RUN = """
 #if defined(__CUDA_ARCH__)
     #pragma unroll UNROLL
 #else
-    #pragma clang loop vectorize(enable) interleave(enable)
+    VECTORIZE
 #endif
     for (int k = first; k < last; ++k) {
         const int j = INDEX;
@@ -227,6 +232,11 @@ class PairSums:
         extrapolation: `Extrapolated`, over fluid.
         force: Force on a particle per volume, over fluid or bodies.
         force_at_walls: `AtWalls`, over walls.
+        way: Sum of W times the way to them, over walls or other bodies.
+        force_in_gap: `Gap`, over walls or bodies. Takes the particle's pressure and the least that there is as v, the
+            weight of the fluid as `common`.
+        gradient: Sum of V grad W, over fluid.
+        seeping: Sums of W and of W times pressure, and the fewest hops, over what its own body's particles hand on.
         find: Write the neighbours of one kind behind `start` others, but `itself`; returns how many there are then.
             For lists alone.
         options: What `wp.kernel` is to do with a kernel that sums.
@@ -239,6 +249,10 @@ class PairSums:
     extrapolation: wp.Function
     force: dict[int, wp.Function]
     force_at_walls: wp.Function
+    way: dict[int, wp.Function]
+    force_in_gap: dict[int, wp.Function]
+    gradient: wp.Function
+    seeping: wp.Function
     find: wp.Function
     options: dict[str, Any]
 
@@ -269,8 +283,13 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool,
         before, term, after = parts
         loop = _RUN.replace("INDEX", "entries[k]" if lists else "k")
         loop = loop.replace("IF_NEAR", "if (r2 < support2)" if branch else "")
+        # The least of a loop is not found so, without a promise that it is a number.
+        loop = loop.replace(
+            "VECTORIZE", "" if parts is SEEPING else "#pragma clang loop vectorize(enable) interleave(enable)"
+        )
         loop = loop.replace("UNROLL", "2" if branch else "1")
-        loop = loop.replace("IMAGES", _images(periodic)).replace("TERM", term)
+        loop = loop.replace("IMAGES", _images(periodic)).replace("TERM", term.replace("DRY_PRESSURE", f"{DRY:e}f"))
+        loop = loop.replace("BEYOND", f"{BEYOND:e}f")
         listed = _LISTED.replace("OTHERS", _OTHERS[kind]).replace("KIND", str(kind)).replace("LOOP", loop)
         search = listed if lists else walk(loop, reach, periodic)
         return _SUM.replace("SEARCH", search).replace("BEFORE", before).replace("AFTER", after)
@@ -307,6 +326,10 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool,
         extrapolation=total(_EXTRAPOLATION, Extrapolated),
         force={kind: total(_MOMENTUM, wp.vec3, kind) for kind in (FLUID, BODIES)},
         force_at_walls=total(_MOMENTUM_AT_WALLS, AtWalls, WALLS),
+        way={kind: total(between(WAY, words), wp.vec3, kind) for kind, words in ACROSS.items()},
+        force_in_gap={kind: total(between(GAP, words), Gap, kind) for kind, words in ACROSS.items()},
+        gradient=total(GRADIENT, wp.vec3),
+        seeping=total(SEEPING, wp.vec3, BODIES),
         find=find,
         options=options,
     )

@@ -9,9 +9,10 @@ import warp as wp
 
 from wsim.kernels.sph.boundary import make_compress, make_extrapolate
 from wsim.kernels.sph.density import make_continuity
-from wsim.kernels.sph.momentum import make_momentum, make_push
+from wsim.kernels.sph.momentum import make_momentum
 from wsim.kernels.sph.neighbors import Finders, make_finders
 from wsim.kernels.sph.pair_sums import make_pair_sums
+from wsim.kernels.sph.push import make_look_across, make_push
 
 
 @dataclass(frozen=True)
@@ -23,6 +24,7 @@ class Programs:
     continuity: wp.Kernel
     extrapolate: wp.Kernel
     momentum: wp.Kernel
+    look_across: wp.Kernel
     push: wp.Kernel
 
     @staticmethod
@@ -46,5 +48,6 @@ class Programs:
             make_continuity(sums, solids),
             make_extrapolate(sums),
             make_momentum(sums, solids),
-            make_push(sums),
+            make_look_across(sums, solids),
+            make_push(sums, solids),
         )

@@ -12,6 +12,8 @@ FLUID = 0
 WALLS = 1  # what does not move
 BODIES = 2  # what does
 
+DRY = wp.constant(-1.0e30)  # pressure of a particle of a solid that no fluid is near [Pa]
+
 
 @wp.struct
 class Species:
@@ -21,6 +23,9 @@ class Species:
     world: wp.array(dtype=int)  # of each, in original order
     point: wp.array(dtype=wp.vec4)  # x, y, z, V
     motion: wp.array(dtype=wp.vec4)  # vx, vy, vz and a pressure, or what a wall gives back
+    facing: wp.array(dtype=wp.vec4)  # of solids: the way to the fluid, of length 1; 0 if there is none
+    across: wp.array(dtype=wp.vec4)  # of bodies: the way to other solids, likewise
+    handed: wp.array(dtype=wp.vec4)  # of bodies: what the last step handed on (`push.make_push`), and the body
     cell_start: wp.array(dtype=int)  # of each cell in the sorted list
     near: wp.array(dtype=wp.uint8)  # blocks within reach of any; for walks alone, and not marked for fluid
     entry: wp.array(dtype=int)  # neighbours: fluid, then walls, then bodies; for lists alone

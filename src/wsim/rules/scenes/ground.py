@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from wsim.defaults import WALL
 from wsim.errors import UserError
-from wsim.plan.layout.bodies import around
+from wsim.plan.layout.bodies import around, extents
 from wsim.plan.schema import Objective, PlanObject, Registration, Relation
 from wsim.plan.schema.formula_contact import CollidesWith, SupportedBy
 from wsim.plan.schema.predicates import OVERLAP
@@ -53,8 +55,8 @@ def build_ground(cast: Cast, taken: set[str], scene: Part) -> Part:
     for thing in catches:
         [part.vessels[id(thing)]] = bodies(thing, cast, taken)
         part.names[id(thing)] = [part.vessels[id(thing)].name]
-    # What carries another comes first: its name is needed.
-    for thing in sorted(things, key=lambda thing: _depth(thing, [])):
+    # What carries another comes first: its name is needed. What goes along the row has its end of it.
+    for thing in sorted(things, key=lambda thing: (_depth(thing, []), _lane(thing))):
         if thing in catches:
             continue
         if thing.target is None and "meet" not in thing.does:
@@ -79,6 +81,11 @@ def _goes(thing: Thing) -> bool:
     return bool({"roll", "slide", "push", "throw", "meet", "topple"} & {*thing.does})
 
 
+def _lane(thing: Thing) -> int:
+    """Where in a row something stands, from right to left: with nothing on the side to which it goes."""
+    return {"right": -1, "left": 1}.get(thing.direction or "", 0) if _goes(thing) else 0
+
+
 class _Ends:
     """Where rows end: what the next thing without a place of its own stands beside."""
 
@@ -90,6 +97,8 @@ class _Ends:
         self.last: dict[int | None, str] = {} if first is None else {None: first}
         edge = max((around(item).high[1] for item in fixed), default=0.0)
         self.inside: dict[int, list[str]] = {}  # what is in a vessel
+        self.goes: dict[int | None, str] = {}  # what goes to the left, as the last of its row
+        self.juts: dict[int | None, float] = {}  # by which what the last of a row carries is wider than that [m]
         self.clear = tidy(scene.span[1] - edge) if fixed else 0.0  # by which what it carries juts out [m]
 
     def among(self, thing: Thing, name: str) -> list[str]:
@@ -98,17 +107,22 @@ class _Ends:
         found.append(name)
         return found[:-1]
 
-    def row(self, thing: Thing) -> Relation | None:
-        """The row that puts a thing beside the last one on the same support."""
+    def row(self, thing: Thing, juts: float) -> Relation | None:
+        """The row that puts a thing, over which what it carries juts out, beside the last one on the same support."""
         on = None if thing.support is None else id(thing.support)
         if on not in self.last:
             return None
         side, gap = (self.side, GAP + self.clear) if on is None else ("LEFT-OF", GAP_ABOVE)
+        if _lane(thing) < 0 or (_lane(thing) > 0 and on in self.goes):
+            side = "BACK-OF"  # on a line of its own: it would run into what is there, or be run into
         self.clear = 0.0 if on is None else self.clear
-        return Relation(predicate=side, ref=self.last[on], gap=gap)
+        return Relation(predicate=side, ref=self.last[on], gap=tidy(gap + juts + self.juts.get(on, 0.0)))
 
-    def grow(self, thing: Thing, name: str) -> None:
+    def grow(self, thing: Thing, name: str, juts: float = 0.0) -> None:
         """Note a new end."""
+        self.juts[None if thing.support is None else id(thing.support)] = juts
+        if _lane(thing) > 0:
+            self.goes[None if thing.support is None else id(thing.support)] = name
         self.last[None if thing.support is None else id(thing.support)] = name
 
 
@@ -129,7 +143,8 @@ def _settle_sides(things: list[Thing], cast: Cast) -> None:
                 if own is not None and own.noun.family == "furniture" and on is None and not beside.ref.does:
                     on = beside.ref.support = own
                     cast.assume(beside.ref.words, f"on {own.words}", f"{thing.words} is there")
-                if on is not None and thing.support is None and on is not thing and "drop" not in thing.does:
+                falls = "drop" in thing.does and (on is None or on.noun.family != "furniture")
+                if on is not None and thing.support is None and on is not thing and not falls:
                     thing.support = on
                     cast.assume(thing.words, f"on {on.words}", f"{beside.ref.words} is there")
 
@@ -237,10 +252,14 @@ def _in_plane(thing: Thing, made: list[PlanObject], index: int, part: Part, ends
     if any(beside.predicate == "under" for beside in thing.beside):
         return []
     sides = _sides(thing) if index == 0 else []
+    if _sides(thing) and index:  # several behind a thing: next to each other
+        across = {"FRONT-OF": "LEFT-OF", "BACK-OF": "LEFT-OF"}.get(_sides(thing)[0].predicate, "FRONT-OF")
+        return [Relation(predicate=across, ref=made[index - 1].name, gap=GAP if thing.support is None else GAP_ABOVE)]
     if not sides:
         # On the middle of what carries it, unless something is there already.
-        row = ends.row(thing)
-        ends.grow(thing, item.name)
+        juts = _juts(thing, item, cast)
+        row = ends.row(thing, juts)
+        ends.grow(thing, item.name, juts)
         return [] if row is None else [row]
     gap = GAP if thing.support is None else GAP_ABOVE
     rows = []
@@ -251,6 +270,15 @@ def _in_plane(thing: Thing, made: list[PlanObject], index: int, part: Part, ends
         if beside.predicate == "LEFT-OF" and ends.last.get(on) == ref:
             ends.grow(thing, item.name)
     return rows
+
+
+def _juts(thing: Thing, item: PlanObject, cast: Cast) -> float:
+    """By how much what a thing carries reaches over it, on each side [m]: neighbours then have room as well."""
+    if thing.noun.family != "solid":
+        return 0.0
+    carried = [one for one in cast.things if one.support is thing and one.bridges is None]
+    made = [one for each in carried for one in bodies(each, replace(cast, assumptions=[]), set())]
+    return max([0.0, *((extents(one)[1] - extents(item)[1]) / 2 for one in made)])
 
 
 def _in_vessel(thing: Thing, item: PlanObject, vessel: str, held: int, before: list[str]) -> list[Relation]:
@@ -312,10 +340,10 @@ def _objectives(thing: Thing, item: PlanObject, lower: str | None, last: bool, c
     if lower is None:
         return [Objective(kind="rests_on", object=name, ref="ground", sentence=f"{name} comes to rest on the ground.")]
     if item.primitive == "sphere" or thing.noun.lies or "drop" in thing.does:
-        if item.primitive in ("box", "cylinder") and not thing.noun.lies:
-            return [Objective(kind="rests_on", object=name, ref=lower, sentence=f"{name} comes to rest on {lower}.")]
         onto = thing.support
-        if onto is not None and onto.group and "drop" in thing.does and lower is not None:
+        if item.primitive in ("box", "cylinder") and not thing.noun.lies and not (onto is not None and onto.round):
+            return [Objective(kind="rests_on", object=name, ref=lower, sentence=f"{name} comes to rest on {lower}.")]
+        if onto is not None and onto.noun.family == "solid" and "drop" in thing.does and lower is not None:
             # The kind compares level speeds where both are free; the formula all three parts.
             falls = CollidesWith(object=name, ref=lower)
             sentence = f"{name} falls on {lower}."

@@ -240,6 +240,7 @@ def struck(thing: Thing, part: Part, ramps: Part) -> None:
     if "stop" in thing.does:
         _stop_short(thing, part, ramps)
         return
+    part.frame_rate = max(part.frame_rate, QUICK)  # what comes spinning leaves a blow for a few hundredths of a second
     item = next(item for item in ramps.posed if item.name == part.names[id(thing)][0])
     if "topple" not in target.does:
         _collision(item.name, _met(item, part.names[id(target)], target, part), part)

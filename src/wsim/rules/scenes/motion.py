@@ -7,7 +7,9 @@ import math
 from wsim.defaults import GRAVITY, WALL
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Relation, Vec3
+from wsim.plan.schema.formula import Eventually
 from wsim.plan.schema.formula_motion import Drops
+from wsim.plan.schema.formula_place import SpeedBetween
 from wsim.rules.cast import ROUND, Cast, Thing
 from wsim.rules.materials import GROUND_LOOK, material_named
 from wsim.rules.scenes.catch import catcher, deaden, lands, reach
@@ -31,6 +33,8 @@ STOP_WAY = 1.5  # after which a ball that is to stop has stopped [m]
 ROLL_WAY = 3.0  # that a ball rolls while one looks [m]
 THROW_SPEED, THROW_ANGLE, THROW_HEIGHT = 4.0, 45.0, 1.0  # [m/s], [deg], [m]
 AIM_DISTANCE = 1.5  # from what is thrown to what it is thrown at [m]
+LASTS = 0.1  # by which the time that a speed lasts for may be off that which is said
+_AXES = {"front": "+X", "back": "-X", "left": "+Y", "right": "-Y"}
 SHARE = 0.5  # of the way that theory gives, which what moves must make at least
 _GROUND = PlanObject.proxy(name="ground", role="terrain", primitive="ground", material=GROUND_LOOK, state="static")
 
@@ -53,7 +57,7 @@ def move(thing: Thing, item: PlanObject, cast: Cast, part: Part, below: str | No
     check_round(thing)
     carrier = next((o for o in part.objects if o.name == below), ground_object(cast.ground))
     friction = pair_friction(item, carrier, thing.said("friction", thing.support))
-    direction = thing.direction or "front"
+    direction = free_way(thing, cast)
     if thing.force is not None:
         push(thing, item, friction, DIRECTIONS[direction], cast, part)
         return item
@@ -61,7 +65,7 @@ def move(thing: Thing, item: PlanObject, cast: Cast, part: Part, below: str | No
         return _into(thing, item, carrier, how, friction, direction, cast, part)
     speed = _speed(thing, item, carrier, how, friction, cast)
     if thing.direction is None:
-        cast.assume(thing.words, "towards +X", "the prompt gives no direction")
+        cast.assume(thing.words, f"towards {_AXES[direction]}", "the prompt gives no direction")
     moving = started(item, times(DIRECTIONS[direction], speed), rolls=how == "roll")
     part.objectives += _way(thing, moving, carrier, how, speed, friction, direction)
     if not friction and how != "roll":
@@ -72,6 +76,8 @@ def move(thing: Thing, item: PlanObject, cast: Cast, part: Part, below: str | No
         if how == "roll":
             stop = _slowed(thing, speed, cast)
             part.duration = max(part.duration, round(stop + 1.0, 1))
+    elif how == "roll" and thing.lasts is not None:
+        cast.duration = cast.duration or thing.lasts
     time = max(1.5, ROLL_WAY / speed) if how == "roll" else 1.0 + stop
     part.duration = max(part.duration, round(min(time, 3.0) if how == "roll" else time, 1))
     way = speed * (cast.duration or part.duration) if how == "roll" else stopping_distance(speed, friction)
@@ -129,10 +135,11 @@ def falls_off(item: PlanObject, carrier: PlanObject) -> Objective:
 
 def _slowed(thing: Thing, speed: float, cast: Cast) -> float:
     """A rolling resistance that stops a ball on its way: a = g c / (1 + I / m r^2); the time that it takes [s]."""
-    resistance = round(1.4 * speed**2 / (2 * GRAVITY * STOP_WAY), 4)
+    way = STOP_WAY if thing.lasts is None else speed * thing.lasts / 2
+    resistance = round(1.4 * speed**2 / (2 * GRAVITY * way), 4)
     thing.pairs.append((thing.support, "rolling", resistance))
-    cast.assume(thing.words, f"a rolling resistance of {resistance:g}", f"so that it stops after {STOP_WAY:g} m")
-    return 2 * STOP_WAY / speed
+    cast.assume(thing.words, f"a rolling resistance of {resistance:g}", f"so that it stops after {way:g} m")
+    return 2 * way / speed
 
 
 def started(item: PlanObject, velocity: Vec3, *, rolls: bool) -> PlanObject:
@@ -161,6 +168,8 @@ def check_round(thing: Thing) -> None:
 
 
 def _speed(thing: Thing, item: PlanObject, carrier: PlanObject, how: str, friction: float, cast: Cast) -> float:
+    if thing.lasts is not None and how != "roll":
+        return _lasting_speed(thing, friction, cast)
     if thing.speed is not None:
         return thing.speed
     speed = {"roll": ROLL_SPEED, "slide": SLIDE_SPEED, "push": PUSH_SPEED}[how]
@@ -172,19 +181,72 @@ def _speed(thing: Thing, item: PlanObject, carrier: PlanObject, how: str, fricti
     return speed
 
 
+def _lasting_speed(thing: Thing, friction: float, cast: Cast) -> float:
+    """With which friction stops what slides after the time that is said: v = mu g t [m/s]."""
+    speed = round(friction * GRAVITY * (thing.lasts or 0.0), 2)
+    if thing.speed is not None and abs(thing.speed - speed) > LASTS * speed:
+        stop = f"{thing.speed / (friction * GRAVITY):.3g} s" if friction else "never"
+        raise UserError(
+            f"{thing.words!r}: at {thing.speed:g} m/s friction stops it after {stop}, not {thing.lasts:g} s; leave the "
+            "speed or the time out"
+        )
+    if not 0.0 < speed <= MOST_SPEED:
+        raise UserError(f"{thing.words!r}: to slide for {thing.lasts:g} s it would start at {speed:g} m/s; give less")
+    if thing.speed is None:
+        cast.assume(thing.words, f"starts at {speed:g} m/s", f"friction stops it after {thing.lasts:g} s")
+    return thing.speed or speed
+
+
+def free_way(thing: Thing, cast: Cast) -> str:
+    """Where something goes that is said to go nowhere: along +X, or past what is there.
+
+    Raises:
+        UserError: It is said to go at what is in its way, and not that it hits that.
+    """
+    behind = {"FRONT-OF": "back", "BACK-OF": "front", "LEFT-OF": "right", "RIGHT-OF": "left"}
+    ahead = {"FRONT-OF": "front", "BACK-OF": "back", "LEFT-OF": "left", "RIGHT-OF": "right"}
+    blocked = {behind[one.predicate]: one.ref.words for one in thing.beside if one.predicate in behind}
+    blocked |= {
+        ahead[one.predicate]: other.words
+        for other in cast.things for one in other.beside if one.ref is thing and one.predicate in ahead
+    }  # fmt: skip
+    if thing.direction is not None and thing.direction in blocked:
+        raise UserError(
+            f"{thing.words!r} would run into {blocked[thing.direction]!r}; say that it does, as in 'rolls into', or "
+            "another direction"
+        )
+    return thing.direction or next((way for way in ("front", "left", "right", "back") if way not in blocked), "front")
+
+
 def _way(
     thing: Thing, item: PlanObject, carrier: PlanObject, how: str, speed: float, friction: float, direction: str
 ) -> list[Objective]:
-    name = item.name
+    name, asks = item.name, list[Objective]()
     if thing.off:
-        return [falls_off(item, carrier)]
-    if how == "roll":
-        return []
-    way = round(SHARE * stopping_distance(speed, friction), 3)
-    if how == "slide" and not thing.round:
-        return [Objective(kind="slides", object=name, value=way, sentence=f"{name} slides {way:g} m or more.")]
-    sentence = f"{name} moves {way:g} m or more."
-    return [Objective(kind="moves", object=name, value=way, direction=direction, sentence=sentence)]
+        asks = [falls_off(item, carrier)]
+        way = round(SHARE * min(carrier.size[:2]) / 2, 3) if carrier.size else SHARE
+    elif how == "roll":
+        way = round(SHARE * min(ROLL_WAY / 2, speed * (thing.lasts or 1.0)), 3)
+    else:
+        way = round(SHARE * stopping_distance(speed, friction), 3)
+    if thing.lasts is not None and (how != "roll" or "still" in thing.does):
+        asks.append(_goes_for(name, thing.lasts, speed))
+    if how == "slide" and not thing.round and not thing.off:
+        asks.append(Objective(kind="slides", object=name, value=way, sentence=f"{name} slides {way:g} m or more."))
+        if thing.direction is None:
+            return asks
+    if thing.direction is None and (how == "roll" or thing.off):
+        return asks
+    where = "" if thing.direction is None else f" to the {direction}"
+    sentence = f"{name} moves {way:g} m or more{where}."
+    return [*asks, Objective(kind="moves", object=name, value=way, direction=direction, sentence=sentence)]
+
+
+def _goes_for(name: str, time: float, speed: float) -> Objective:
+    """It still goes when most of the time is over: braked evenly, at a fifth of its speed."""
+    still = SpeedBetween(object=name, low=round(speed / 10, 3), high=speed)
+    formula = Eventually(window=(round(0.8 * time, 3), time), of=still)
+    return asked(name, f"{name} goes for {time:g} s.", formula)
 
 
 def _thrown(thing: Thing, item: PlanObject, cast: Cast, part: Part) -> PlanObject:
@@ -323,5 +385,12 @@ def top(name: str, part: Part) -> float:
 
 
 def item_of(name: str, part: Part) -> PlanObject:
-    """An object of a part, by its name."""
-    return next(item for item in part.objects if item.name == name)
+    """An object of a part, by its name.
+
+    Raises:
+        UserError: It has a pose of its own, as what hangs or is on a ramp has, which is where no rule looks for it.
+    """
+    found = next((item for item in part.objects if item.name == name), None)
+    if found is None:
+        raise UserError(f"{name!r}: the builtin planner lets things hit or carry what stands on the level, not this")
+    return found

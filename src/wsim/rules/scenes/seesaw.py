@@ -6,8 +6,8 @@ import math
 
 from wsim.errors import UserError
 from wsim.plan.schema import Joint, Objective, PlanObject, Pose
-from wsim.plan.schema.formula import Always
-from wsim.plan.schema.formula_place import TiltBetween
+from wsim.plan.schema.formula import Always, Eventually
+from wsim.plan.schema.formula_place import GoneBetween, TiltBetween
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.materials import material_named
 from wsim.rules.scenes.lasting import asked, leans
@@ -20,6 +20,7 @@ HINGE_GAP = 0.005  # between a seesaw's plank and what carries it [m]
 RIDER_SHARE = 0.8  # of the half length, from the hinge to what is on a seesaw
 DROP_HEIGHT = 0.3  # [m]
 LEVEL = 4.0  # that a level plank leans at most [deg]
+RISES, HIGHEST = 0.04, 10.0  # of what goes up with an end, which leans by 3 degrees or more: at least, and at most [m]
 OUTWEIGHS, TWICE = 1.2, 2.0  # what goes down against what goes up: at least, and where a mass is chosen
 Load = tuple[Thing, PlanObject, str]  # what is on it, and at which end
 _OTHER = {"left": "right", "right": "left"}
@@ -178,6 +179,10 @@ def _ask(seesaw: Thing, plank: PlanObject, loads: list[Load], part: Part, cast: 
     else:
         sentence = f"{plank.name} goes down where {low.name} is."
         part.objectives.append(Objective(kind="tilts", object=plank.name, ref=low.name, sentence=sentence))
+    for thing, item, at in loads:
+        if "rise" in thing.does and at != side:
+            up = Eventually(of=GoneBetween(object=item.name, axis="z", low=RISES, high=HIGHEST))
+            part.objectives.append(asked(item.name, f"{item.name} goes up by {RISES:g} m or more.", up))
     if seesaw.angle is not None:
         part.objectives.append(leans(plank.name, seesaw.angle, _room_to_tilt(plank), seesaw.words, SIGN[side]))
 
