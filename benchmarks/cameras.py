@@ -114,9 +114,11 @@ def measure(folder: Path) -> Measured:
     found = recording.read(folder / "recording.rrd")
     plan = load(folder / "plan.json") if (folder / "plan.json").is_file() else None
     motion = Motion.of(found)
-    main = [s for s in subjects(found.world, motion, asked_about(plan) if plan else ()) if s.main]
-    every = np.ones(len(motion.time))
-    scenario = Scenario(found.world, motion, main, every / len(every), every > 0.0)
+    cords = {cord.prim for cord in found.world.cords}  # too thin to be counted
+    every = subjects(found.world, motion, asked_about(plan) if plan else ())
+    main = [s for s in every if s.main and s.prim not in cords]
+    ones = np.ones(len(motion.time))
+    scenario = Scenario(found.world, motion, main, ones / len(ones), ones > 0.0)
     camera = (found.views or [default_camera(found.world)])[0]
     view = shown(camera, scenario)
     rows = json.loads((folder / "review.json").read_text(encoding="utf-8"))["share_of_picture"]

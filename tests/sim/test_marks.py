@@ -8,7 +8,7 @@ from wsim.scene.labels import wholes
 from wsim.scene.world import Camera
 from wsim.sim import Simulation
 from wsim.sim.cameras import CameraRenderer
-from wsim.sim.marks import PIN, PUSH, Marks, caption
+from wsim.sim.marks import PIN, PUSH, SPECK, Marks, caption
 
 BLANK = np.full((90, 160, 3), 120, dtype=np.uint8)
 CAMERA = Camera(prim="/World/side", eye=(0.0, -4.0, 1.0), target=(0.0, 0.0, 1.0), width=160, height=90)
@@ -51,6 +51,28 @@ def test_a_push_is_an_arrow_from_where_it_comes(tmp_path):
     assert of_colour(drawn[0], PUSH)[0] < 80.0
     assert abs(widths[0] - 2.0 * widths[1]) <= 3.0
     assert (drawn[2] == BLANK).all()
+
+
+def test_a_speck_is_ringed_and_has_its_way_where_the_camera_stands(tmp_path):
+    """A box of 1 cm, 0.4 px of these pictures, goes 2 m to the right through their middle; one of 50 cm is no speck."""
+    scene = Scene()
+    scene.box("box", size=(0.01, 0.01, 0.01), position=(-1.0, 0.0, 1.0))
+    _, world = described(scene, tmp_path)
+    middle = np.linspace((-1.0, 0.0, 1.0), (1.0, 0.0, 1.0), 21)
+    corners = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    pose = np.array([[*middle[-1], 0.0, 0.0, 0.0, 1.0]])
+    marks = Marks(world, None, [middle[:, None] + 0.01 * corners])
+    column, row, count = of_colour(marks.draw(BLANK, CAMERA, 0, pose), SPECK)
+    pixels = 160.0 / (8.0 * np.tan(np.radians(25.0)))  # a metre, 4 m off
+    assert count > 6
+    assert abs(column - (80.0 - pixels)) < 1.0 and abs(row - 45.0) < 1.0
+    way = (marks.draw(BLANK, CAMERA, 20, pose) == np.array(SPECK)).all(axis=2).any(axis=0)
+    assert abs(np.ptp(np.nonzero(way)[0]) - 2.0 * pixels) < 8.0
+    follows = CAMERA.model_copy(update={"follows": "/World/box"})
+    ringed = (marks.draw(BLANK, follows, 20, pose) == np.array(SPECK)).all(axis=2).any(axis=0)
+    assert 3 < ringed.sum() < 12
+    large = Marks(world, None, [middle[:, None] + 0.5 * corners])
+    assert (large.draw(BLANK, CAMERA, 20, pose) == BLANK).all()
 
 
 def test_a_caption_is_below(tmp_path):

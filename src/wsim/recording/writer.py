@@ -156,16 +156,17 @@ class RecordingWriter:
         """Say which cameras the pictures are taken with, where those are not the world's: what is read has them.
 
         Args:
-            cameras: In the place of the world's, of the same prims; of a world without any, its own.
+            cameras: In the place of the world's, of the same prims, and then those beside them.
             times: Of all frames (F,) [s].
             body_q: Poses at them (F, B, 7).
 
         Raises:
-            ValueError: Others than the world's.
+            ValueError: One of the world's is not among them, or one comes twice.
         """
         self._check_open()
-        if self.world.cameras and [c.prim for c in cameras] != [c.prim for c in self.world.cameras]:
-            raise ValueError(f"views: {[c.prim for c in cameras]}; the world has {list(self._views)}")
+        prims, own = [c.prim for c in cameras], [c.prim for c in self.world.cameras]
+        if prims[: len(own)] != own or len(set(prims)) < len(prims):
+            raise ValueError(f"views: {prims}; the world has {own}, which come first, each once")
         rows = {body.prim: i for i, body in enumerate(self.world.bodies)}
         for camera in cameras:
             if camera == self._views.get(camera.prim):

@@ -1,4 +1,4 @@
-"""What is drawn over a picture that has no body: hinges, pushes that nothing seen gives, and a line of text."""
+"""What is drawn over a picture that has no body: hinges, pushes that nothing seen gives, where specks go, and text."""
 
 from __future__ import annotations
 
@@ -13,10 +13,13 @@ from wsim.scene.following import camera_at
 from wsim.scene.labels import object_of, wholes
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from wsim.scene.world import Camera, Joint, World
 
 Array = np.ndarray
-PIN, PUSH, INK, PAPER = (250, 250, 250), (235, 105, 20), (20, 20, 20), (255, 255, 255)
+PIN, PUSH, INK, PAPER, SPECK = (250, 250, 250), (235, 105, 20), (20, 20, 20), (255, 255, 255), (200, 20, 90)
+SMALL, RING = 8.0 / 640.0, 0.014  # of the picture's width: what is smaller has a ring of this radius round it
 PIN_RADIUS, LONGEST, LEAST = 0.007, 0.09, 0.02  # of the picture's width: a hinge's ring, the arrow of the largest push
 FAINT = 0.02  # of the largest push of a run: what is less is not drawn
 TEXT = 0.026  # of the picture's width, the height of its letters
@@ -28,10 +31,12 @@ class Marks:
     Args:
         world: What the stage states.
         push: (F, B, 3) forces that control gives the bodies [N]; None: there are none.
+        things: Corners of what the run is about, (F, n, 3) [m] each: where one is a speck, a ring is round it, and a
+            camera that stands has the way that it came.
     """
 
-    def __init__(self, world: World, push: Array | None) -> None:
-        self.world = world
+    def __init__(self, world: World, push: Array | None, things: Sequence[Array] = ()) -> None:
+        self.world, self._things = world, things
         self._push = push
         self._largest = float(np.linalg.norm(push, axis=2).max(initial=0.0)) if push is not None else 0.0
         self._rows = {body.prim: k for k, body in enumerate(world.bodies)}
@@ -53,14 +58,19 @@ class Marks:
             frame: Its number.
             body_q: (B, 7) poses then.
         """
+        follows = camera.follows is not None
         if camera.follows is not None:
             camera = camera_at(camera, self.world, body_q[self._rows[camera.follows]])
         pins = [_held_at(joint, body_q[self._rows[joint.child]]) for joint in self._hinges]
         arrows = self._arrows(camera, frame, body_q)
-        if not pins and not arrows:
+        specks = [points for points in self._things if _is_speck(camera, points[frame])]
+        if not pins and not arrows and not specks:
             return rgb
         picture = Image.fromarray(rgb)
         brush = ImageDraw.Draw(picture)
+        for points in specks:
+            way = points[frame if follows else 0 : frame + 1].mean(axis=1)
+            _ringed(brush, [_projected(camera, place) for place in way], camera.width)
         for place in pins:
             _pin(brush, _projected(camera, place), camera.width)
         for tail, tip in arrows:
@@ -111,6 +121,28 @@ def _projected(camera: Camera, point: Array) -> tuple[float, float] | None:
     focal = 0.5 * camera.width / math.tan(math.radians(camera.fov) / 2.0)
     x, y = float(local @ right), float(local @ np.cross(ahead, right))
     return 0.5 * camera.width + focal * x / depth, 0.5 * camera.height + focal * y / depth
+
+
+def _is_speck(camera: Camera, points: Array) -> bool:
+    """Whether points (n, 3) [m] are in the picture, and so near to each other that they are hardly to be told."""
+    found = [_projected(camera, point) for point in points]
+    seen = np.array([each for each in found if each is not None])
+    if len(seen) < len(found):
+        return False
+    inside = ((seen >= 0.0) & (seen <= (camera.width, camera.height))).all()
+    return bool(inside and np.ptp(seen, axis=0).max() < SMALL * camera.width)
+
+
+def _ringed(brush: ImageDraw.ImageDraw, way: Sequence[tuple[float, float] | None], width: int) -> None:
+    """A ring about where a way has come to, and the way before it."""
+    points, at = [each for each in way if each is not None], way[-1]
+    if at is None:
+        return
+    radius = max(3.0, RING * width)
+    before = [each for each in points if math.dist(each, at) > radius]
+    if len(before) > 1:
+        brush.line(before, fill=SPECK, width=1)
+    brush.circle(at, radius, outline=SPECK, width=max(1, round(radius / 5.0)))
 
 
 def _pin(brush: ImageDraw.ImageDraw, at: tuple[float, float] | None, width: int) -> None:

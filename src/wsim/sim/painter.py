@@ -9,12 +9,11 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from wsim.sim.marks import Marks
-
 if TYPE_CHECKING:
     from wsim.sim.cameras import CameraImage, CameraRenderer
     from wsim.sim.framing.motion import Motion
     from wsim.sim.kept_states import KeptStates
+    from wsim.sim.marks import Marks
     from wsim.sim.model import Built
 
 AHEAD = 3  # frames a painter, that are drawn before they are asked for
@@ -42,7 +41,7 @@ class Painter:
 
 
 def painted(
-    painters: list[Painter], kept: KeptStates, motion: Motion, whole: Collection[int]
+    painters: list[Painter], kept: KeptStates, motion: Motion, whole: Collection[int], marks: Marks
 ) -> Iterator[tuple[int, Images]]:
     """Number and pictures of each frame, in order: by the first camera, and of some frames by all.
 
@@ -51,12 +50,12 @@ def painted(
     Args:
         painters: Each draws one frame at a time.
         kept: The frames.
-        motion: Of the same, for the marks in the pictures.
+        motion: Of the same.
         whole: Frames that all cameras take.
+        marks: That are drawn over the pictures.
     """
     cameras = {camera.prim: camera for camera in painters[0].renderer.cameras}
     first = [painters[0].renderer.cameras[0].prim]
-    marks = Marks(painters[0].renderer.world, motion.push)
     free: queue.SimpleQueue[Painter] = queue.SimpleQueue()
     for painter in painters:
         free.put(painter)

@@ -20,7 +20,7 @@ from wsim.sim.framing.frame import Framing
 from wsim.sim.framing.hidden import Hidden
 from wsim.sim.framing.moments import STILLS, chosen
 from wsim.sim.kept_states import KeptStates
-from wsim.sim.marks import caption
+from wsim.sim.marks import Marks, caption
 from wsim.sim.painter import Painter, painted
 from wsim.sim.seen import ObjectPixels, still_name, write_png
 from wsim.solvers.launch import thread_count
@@ -117,9 +117,10 @@ class Pictures:
             framing = Framing(self.world, motion, self.film.named, Hidden(self.renderer, self.built))
             self.renderer.look_through(framing.cameras() or self.renderer.cameras)
             self.writer.views(self.renderer.cameras, motion.time, motion.body_q)
+        marks = Marks(self.world, motion.push, framing.things)
         stills = set(chosen(framing.moments, len(self._kept), STILLS))
         with self.phases.phase("draw"), self.video:
-            for frame, images in painted(self._painters(), self._kept, motion, stills):
+            for frame, images in painted(self._painters(), self._kept, motion, stills, marks):
                 self._keep(self._kept.times[frame], images, frame in stills)
                 self.progress("drawing", frame + 1, len(self._kept))
         if self.film.review:

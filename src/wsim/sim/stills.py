@@ -93,7 +93,7 @@ class Stills:
         framing = Framing(self.world, motion, named, Hidden(self._renderer, self._built))
         self._renderer.look_through(framing.cameras() or self._renderer.cameras)
         times = motion.time[chosen(framing.moments, len(motion.time), most)]
-        marks = Marks(self.world, motion.push)
+        marks = Marks(self.world, motion.push, framing.things)
         frames = [recording.frame_index(float(time)) for time in times]
         return [
             replace(still, rgb=marks.draw(still.rgb, still.camera, frame, motion.body_q[frame]))

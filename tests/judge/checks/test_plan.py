@@ -413,3 +413,19 @@ def test_an_object_that_is_hidden_in_all_pictures_is_found():
     assert not finding.passed and finding.prim == "/World/box" and finding.target.kind == "camera"
     assert only(ask(CheckSeen(), seen((0.0, 1.2 * speck, 0.0)))).passed
     assert ask(CheckSeen(), a_world()) == []  # no pictures were made
+
+
+@pytest.mark.parametrize(
+    ("speed", "planned", "passes"), [(0.0, False, True), (0.0, True, False), (0.2, False, False), (0.01, False, True)]
+)
+def test_what_lies_there_and_no_plan_names_may_be_hidden(speed, planned, passes):
+    """A box behind something in all pictures goes 20 or 1 cm, or is planned; a twentieth of its radius is 1.1 cm."""
+    t = times(1.0)
+    place = np.tile(np.array(((0.0, 0.0, 0.05), (0.0, 2.0, 0.1))), (len(t), 1, 1))
+    place[:, :, 0] += np.outer(t, (speed, 1.0))
+    bodies = [box(size=SIZE, mass=BOX_KG), ball(mass=BALL_KG)]
+    moves = record(bodies, place, np.gradient(place, t, axis=0), t, statics=[ground()])
+    track = SeenTrack(t, ["/World/ball", "/World/box"], np.tile(np.float32((0.01, 0.0)), (len(t), 1)))
+    seen = replace(with_world(moves, cameras=[camera()]), seen={"/World/side": track})
+    found = ask(CheckSeen(), seen, a_plan()) if planned else ask(CheckSeen(), seen)
+    assert all(finding.passed for finding in found) == passes

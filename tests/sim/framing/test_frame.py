@@ -1,16 +1,14 @@
 """Cameras framed on what happened: subjects are seen in all stills, whatever the stage's camera looked at."""
 
-import json
 import math
-import tempfile
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
+from tests.sim.framing.runs import ENOUGH, HEIGHT, WIDTH, a_camera, a_world, drawn, recorded
 from wsim.geometry.rotations import line_of_sight
 from wsim.recording import read
 from wsim.scene import Scene
@@ -19,36 +17,11 @@ from wsim.sim import Simulation
 from wsim.sim.framing.frame import Framing
 from wsim.sim.framing.motion import Motion
 
-WIDTH, HEIGHT = 160, 90
-ENOUGH = 7  # pixels of these pictures: of a ball that is 3 px across, 12 of a picture of 640
-
-
-def a_world(duration=0.6):
-    """With ground."""
-    scene = Scene()
-    scene.simulation(duration=duration, frame_rate=25.0)
-    scene.ground()
-    return scene
-
-
-def a_camera(scene, eye=(0.0, -3.0, 1.0), target=(0.0, 0.0, 0.5), **more):
-    """A small picture, of what a plan thinks will happen."""
-    return scene.camera("main", eye=eye, target=target, width=WIDTH, height=HEIGHT, **more)
-
 
 def run(scene, named=()):
-    """Pixels of each object in each still, by time, and the recording, of a run with pictures."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        simulation = Simulation(scene.save(folder / "stage.usda"), device="cpu", draws=True)
-        simulation.run(folder / "r.rrd", folder / "v.mp4", folder / "frames", folder / "review.json", named=named)
-        rows = json.loads((folder / "review.json").read_text(encoding="utf-8"))["share_of_picture"]
-        stills = {}
-        for row in rows:
-            stills.setdefault(row["camera"], []).append(
-                {prim: round(share * WIDTH * HEIGHT) for prim, share in row["objects"].items()}
-            )
-        return stills["/World/main"], read(folder / "r.rrd")
+    """Pixels of each object in each still of the stage's camera, by time, and the recording, of a run with pictures."""
+    stills, found = drawn(scene, named)
+    return stills["/World/main"], found
 
 
 def shows(stills, name, least=ENOUGH):
@@ -132,7 +105,8 @@ def test_what_falls_out_of_the_world_is_seen():
     scene.box("ledge", size=(0.5, 0.5, 0.1), position=(0.0, 0.0, 0.0), static=True)
     scene.sphere("ball", radius=0.1, position=(0.0, 0.0, 0.15), velocity=(1.0, 0.0, 0.0))
     a_camera(scene)
-    pixels, seen = shows(run(scene)[0], "ball")
+    stills, _ = drawn(scene)
+    pixels, seen = shows(stills["/World/default_camera_ball"], "ball")
     assert seen, pixels
 
 
@@ -152,13 +126,6 @@ def test_frames_from_the_first_that_is_no_number_are_left_out(tmp_path):
     assert Framing(describe(stage), broken).cameras()[0].follows is None
     nothing = Motion.of(replace(found, body_q=np.full_like(q, np.nan)))
     assert Framing(describe(stage), nothing).cameras() == describe(stage).cameras
-
-
-def recorded(scene, folder):
-    """What happened in a world, and the world, without pictures."""
-    stage = scene.save(folder / "stage.usda")
-    Simulation(stage, device="cpu").run(folder / "r.rrd")
-    return describe(stage), Motion.of(read(folder / "r.rrd"))
 
 
 def test_a_camera_that_shows_it_is_kept_to_the_bit_and_a_fixed_one_always(tmp_path):
@@ -217,7 +184,7 @@ def test_what_lies_still_in_the_picture_is_not_lost_for_what_moves(tmp_path):
     scene.box("block", size=(0.1, 0.1, 0.1), position=(0.0, 1.2, 0.05))
     a_camera(scene, eye=(0.0, -3.0, 1.0), target=(0.0, 0.6, 0.0))
     world, motion = recorded(scene, tmp_path)
-    (camera,) = Framing(world, motion).cameras()
+    camera, *_ = Framing(world, motion).cameras()
     assert camera != world.cameras[0]  # which showed a marble of 5 pixels
     right, ahead = line_of_sight(camera.eye, camera.target, camera.up)
     way = np.subtract((0.0, 1.2, 0.05), camera.eye)

@@ -14,6 +14,7 @@ from wsim.judge.language.kinds import formula_of
 from wsim.judge.language.objective import ObjectiveCheck, conjuncts
 from wsim.judge.verdict import RepairTarget
 from wsim.plan.schema.formula import Eventually, Predicate, Then
+from wsim.scene.labels import object_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -22,11 +23,12 @@ if TYPE_CHECKING:
 
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
-    from wsim.scene.world import Camera
+    from wsim.scene.world import Body, Camera
 
     Floats = NDArray[np.float64]
     Bools = NDArray[np.bool_]
 
+MOVES = 0.05  # of its size, and of a radian: what goes and turns no farther lies still
 MOMENTS = 48  # frames that are looked at
 ONCE = "what the world is about is to be seen, once at least"
 ASKED = "what the plan asks something of is to be seen as it does it, not only where it starts"
@@ -134,8 +136,9 @@ class CheckInFrame(Check):
 
 @dataclass
 class CheckSeen(Check):
-    """Everything that moves is to be seen in some picture: not hidden behind something in all, and not too small.
+    """What moves, and what the plan names, is to be seen in some picture: not hidden in all, and not too small.
 
+    Where nothing moves and there is no plan, that is all there is. What only lies there may be behind something.
     A cable is one thing, part of which may run behind a post; so is what inner parts that meet nothing hold together,
     what is fixed to each other for good, and a cart with its wheels.
     """
@@ -149,7 +152,7 @@ class CheckSeen(Check):
             return []
         sizes = {camera.prim: camera.width * camera.height for camera in evidence.world.cameras}
         found, least, least_prim = [], 1.0, ""
-        for thing in strands(evidence.world):
+        for thing in _told_of(evidence):
             body = thing[0]
             if any(shape.opacity < 1.0 for each in thing for shape in each.shapes) or not body.shapes:
                 continue  # what is clear is not in the pictures of what is opaque
@@ -190,6 +193,20 @@ class CheckSeen(Check):
                 least = self.pixels / sizes.get(camera, 640 * 360)
                 shown |= track.share[nearest][:, columns].sum(axis=1) >= least
         return times, shown
+
+
+def _told_of(evidence: Evidence) -> list[list[Body]]:
+    """What moves or turns by a twentieth of its size, and what the plan names; where there is none, all."""
+    motion, things = evidence.motion, strands(evidence.world)
+    if not len(evidence.time):
+        return things
+    gone = np.linalg.norm(motion.q[:, :, :3] - motion.q[0, :, :3], axis=2).max(axis=0)
+    turned = 2.0 * np.arccos(np.clip(np.abs((motion.q[:, :, 3:] * motion.q[0, :, 3:]).sum(axis=2)), 0.0, 1.0))
+    moves = ~((gone <= MOVES * motion.radius) & (turned.max(axis=0) <= MOVES))
+    told = {body.prim for body, each in zip(evidence.world.bodies, moves, strict=True) if each}
+    asked = {evidence.prim(item.name) for item in evidence.plan.objects} if evidence.plan is not None else set()
+    found = [thing for thing in things if any(b.prim in told or object_of(b.prim) in asked for b in thing)]
+    return found or things
 
 
 def _events(evidence: Evidence) -> Iterator[tuple[str, float, str]]:

@@ -1,9 +1,9 @@
-"""The cameras that a run's pictures are taken with: those of its stage, or corrected where they do not show it."""
+"""The cameras that a run's pictures are taken with: those of its stage, corrected or with others beside them."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -12,41 +12,42 @@ import numpy as np
 from wsim.scene.world import Camera
 from wsim.sim.framing.moments import STILLS, Moment, chosen, moments
 from wsim.sim.framing.motion import Motion
-from wsim.sim.framing.shown import Scenario, Shown, shown
-from wsim.sim.framing.subjects import Subject, subjects
-from wsim.sim.framing.tried import views, views_from_there
-from wsim.sim.render_views import DEFAULT_CAMERA, SUN
+from wsim.sim.framing.rating import KEPT, SHOWN, Look, Rating
+from wsim.sim.framing.shown import IN, Scenario, Shown, passes, shown
+from wsim.sim.framing.subjects import Subject, alone, subjects
+from wsim.sim.framing.tried import ground_of, views, views_from_there, views_of_all
+from wsim.sim.render_views import DEFAULT_CAMERA
 
 if TYPE_CHECKING:
     from wsim.recording import RecordingWriter
     from wsim.scene.world import World
 
 Array = np.ndarray
-# Which share of each subject (F, S) others hide, by a camera's picture of each of some frames (F,).
-Look = Callable[[Camera, Scenario, Shown], Array]
-
 FRAMES = 24  # that views are held against
 EVENT, AFTER = 3.0, 0.3  # weights of frames about a moment, and after the last one, where others have 1
 ABOUT = 0.15  # [s] about a moment
-WELL, KEPT = 0.7, 0.75  # of 1, and of the best view's worth: a camera that is worth so much is kept
-SHOWN = 0.9  # of the time: for how long a camera that is kept shows each main subject
-LOOKED_AT = 4  # views whose pictures are looked at, at least, for what hides what
+WELL = 0.7  # of 1: a camera that is worth so much is kept
 OWN = 1.1  # what a view from the side that the camera was on is worth, of one from another
-LIT = 0.05  # what a view that the sun is behind is worth more, and one against it less
-LEVEL, STEEP = 30.0, 0.6  # [deg] that a view is above the horizon; a view from above is worth less by so much
 APART = 40.0  # [deg] between the ways in which two cameras look, where one of them was moved
+HALF = 0.5  # of the time that matters: a first view from near shows each main subject for longer
+LONG = 0.25  # of it: a main subject that no camera shows for longer gets one of its own
+MORE = 4  # cameras beside those of a world, at most
 DIGITS = 3
+LENS = Camera(prim=DEFAULT_CAMERA, eye=(0.0, -1.0, 0.0), target=(0.0, 0.0, 0.0))
 
 
 class Framing:
-    """Keeps or corrects a world's cameras, by how the world moved.
+    """Keeps or corrects a world's cameras, by how the world moved, and adds those that it takes beside them.
 
     A camera is kept as it is if it is fixed, or if it shows what the run is about: each main subject (`subjects`) for
     nine tenths of the time that matters, at a useful size and not hidden, about as well as the best view that is tried.
     Else it is turned, moved or made to follow; the first one to the best view of all, the others where that shows
     enough from the side on which they are, or from one where none is. What could move and was in the picture of one
-    stays in that of one. A world
-    without cameras gets the best view, and one that stands and sees all of the way if that goes along.
+    stays in that of one. A world without cameras gets the best view.
+
+    One camera stands and has all of the way in its picture, whatever the size of what goes it: the first one where no
+    view from near has each main subject, or where the best one goes along through the empty sky; or another of the
+    world's, or one beside them. What none of them shows for long enough has a camera of its own.
 
     Args:
         world: What the stage states.
@@ -56,40 +57,39 @@ class Framing:
 
     Attributes:
         moments: When something happens, in order of time.
+        things: Corners of what goes somewhere and is what the run is about, (F, n, 3) [m] each.
     """
 
     def __init__(self, world: World, motion: Motion, named: Sequence[str] = (), look: Look | None = None) -> None:
         self.world, self.motion, self._look = world, motion, look
         self.moments: list[Moment] = []
-        self._scenario: Scenario | None = None
+        self.things: list[Array] = []
+        self._rating: Rating | None = None
         if len(motion.time):
             found = subjects(world, motion, named)
             self.moments = moments(world, motion, found)
+            self.things = [each.points for each in found if each.main and each.able and each.moves]
             if found:
-                self._prepare(found)
+                self._rating = Rating(self._scenario(found), look)
 
     def cameras(self) -> list[Camera]:
-        """Those that the pictures are taken with, in the world's order."""
+        """Those that the pictures are taken with: the world's in their order, and what it takes beside them."""
         given = self.world.cameras
-        if self._scenario is None:
+        rating = self._rating
+        if rating is None:
             return list(given)
         if not given:
-            return self._own(Camera(prim=DEFAULT_CAMERA, eye=(1.0, 0.0, 0.0), target=(0.0, 0.0, 0.0)))
+            tried = views(LENS, rating.scenario, self._around)
+            return self._with_more([_rounded(self._first(*rating.best(tried), LENS)[0])], rating)
         framed: list[Camera] = []
         for camera in given:
-            framed.append(camera if camera.fixed else self._kept_or_better(camera, framed))
-        self._needed = self._ever(given) & ~self._ever(framed)
-        if self._needed.any() and not given[0].fixed:
-            framed[0] = self._kept_or_better(given[0], [])
-        return list(given) if (self._ever(given) & ~self._ever(framed)).any() else framed
+            framed.append(camera if camera.fixed else self._kept_or_better(camera, framed, rating))
+        needed = _any(rating, given) & ~_any(rating, framed)
+        if needed.any() and not given[0].fixed:
+            framed[0] = self._kept_or_better(given[0], [], rating, needed)
+        return framed if all(camera.fixed for camera in given) else self._with_more(framed, rating)
 
-    def _ever(self, cameras: Sequence[Camera]) -> Array:
-        """(S,) which of the subjects that could move are in the picture of some camera at some time."""
-        assert self._scenario is not None
-        able = np.array([subject.able for subject in self._scenario.subjects])
-        return np.asarray(able & np.any([shown(camera, self._scenario).ever for camera in cameras], axis=0))
-
-    def _prepare(self, found: list[Subject]) -> None:
+    def _scenario(self, found: list[Subject]) -> Scenario:
         """Thin the frames out, and weigh them."""
         time = self.motion.time
         happens = [moment.frame for moment in self.moments]
@@ -108,88 +108,68 @@ class Framing:
             {prim: points[frames] for prim, points in self.motion.fluids.items()},
         )  # fmt: skip
         thin = [replace(each, points=each.points[frames]) for each in found]
-        self._scenario = Scenario(self.world, moved, thin, weight / weight.sum(), np.isin(frames, stills))
-        self._needed = np.zeros(len(thin), dtype=bool)  # subjects that a view is not to lose
+        return Scenario(self.world, moved, thin, weight / weight.sum(), np.isin(frames, stills))
 
-    def _own(self, lens: Camera) -> list[Camera]:
-        assert self._scenario is not None
-        tried = list(views(lens, self._scenario, self._around))
-        best = self._best(tried)[0]
-        if best.follows is None:
-            return [_rounded(best)]
-        whole = self._best([view for view in tried if view.follows is None])[0]
-        return [_rounded(best), _rounded(whole.model_copy(update={"prim": f"{DEFAULT_CAMERA}_whole"}))]
-
-    def _kept_or_better(self, camera: Camera, framed: Sequence[Camera]) -> Camera:
+    def _kept_or_better(
+        self, camera: Camera, framed: Sequence[Camera], rating: Rating, needed: Array | None = None
+    ) -> Camera:
         """A camera, or a better one, which looks from elsewhere than those that are `framed` already."""
-        assert self._scenario is not None
-        own, shows = self._worth(camera)
+        own, shows = rating.worth(camera)
         if shows and own >= WELL:
             return camera
-        there, worth = self._best(views_from_there(camera, self._scenario, self._around))
+        there, worth = rating.best(views_from_there(camera, rating.scenario, self._around), needed)
         worth *= OWN
         if any(_apart(there, other) < APART for other in framed):
             there, worth = camera, 0.0  # what is seen from there is seen
         if not framed or worth < 0.5 * WELL:
-            tried = views(camera, self._scenario, self._around)
+            tried = views(camera, rating.scenario, self._around)
             elsewhere = [view for view in tried if all(_apart(view, one) >= APART for one in framed)]
-            other, found = self._best(elsewhere) if elsewhere else (camera, 0.0)
+            other, found = rating.best(elsewhere, needed) if elsewhere else (camera, 0.0)
             if found > worth:
                 there, worth = other, found
         if shows and own >= KEPT * worth / OWN:
             return camera
+        if not framed:
+            there, worth = self._first(there, worth, camera)
+        elif not any(rating.shows_all(each) for each in (*framed, there)):
+            there, worth = self._whole(camera), math.inf
         return _rounded(there) if worth > own else camera
 
-    def _taken_from(self, view: Camera) -> float:
-        """What a view is worth for where it is taken from, of one as people stand, with the sun at their side.
+    def _first(self, best: Camera, worth: float, lens: Camera) -> tuple[Camera, float]:
+        """The best view from near, or that of all the way where one from near does not do.
 
-        More with the sun behind the camera, and less from above: there a fall is a ball that becomes smaller.
+        It misses a subject that is in the other, or goes along where nothing goes by: in an empty sky a thing hangs
+        still in its picture.
         """
-        rise = math.degrees(math.asin((view.eye[2] - view.target[2]) / math.dist(view.eye, view.target)))
-        from_above = STEEP * max(0.0, rise - LEVEL) / (90.0 - LEVEL)
-        sun = next((light.direction for light in self.world.lights if light.kind == "distant"), SUN)
-        back, light = (np.array(way[:2]) for way in (np.subtract(view.eye, view.target), sun))
-        shade = LIT * float(back @ light) / max(float(np.linalg.norm(back) * np.linalg.norm(light)), 1e-12)
-        return (1.0 - from_above) * (1.0 - shade)
-
-    def _worth(self, camera: Camera) -> tuple[float, bool]:
-        """What a camera is worth, and whether it shows each main subject for long enough."""
-        assert self._scenario is not None
-        seen = shown(camera, self._scenario)
-        hidden = self._hidden(camera, seen)
-        main = np.array([subject.main for subject in self._scenario.subjects])
-        shares = (self._scenario.weight @ seen.seen) * (1.0 - hidden)
-        return seen.worth(self._scenario, hidden), bool((shares[main] >= SHOWN).all())
-
-    def _hidden(self, camera: Camera, seen: Shown) -> Array:
-        """(S,) share of each subject that is hidden, of the time that it is in the picture."""
-        assert self._scenario is not None
-        if self._look is None:
-            return np.zeros(len(self._scenario.subjects))
-        return self._look(camera, self._scenario, seen)
-
-    def _best(self, tried: Iterable[Camera]) -> tuple[Camera, float]:
-        """The view that shows most, and what it is worth; what hides what is looked at in the best ones only."""
-        assert self._scenario is not None
-        found = [(shown(view, self._scenario), view) for view in tried]
-        found = [each for each in found if each[0].ever[self._needed].all()] or found
-        rated = sorted(
-            ((self._taken_from(view) * seen.worth(self._scenario), seen, view) for seen, view in found),
-            key=lambda each: -each[0],
+        assert self._rating is not None
+        scenario, whole = self._rating.scenario, self._whole(lens)
+        asked = np.array([each.main or each.asked for each in scenario.subjects])
+        there, near = (shown(view, scenario).inside[scenario.stills] >= IN for view in (whole, best))
+        short = (self._rating.seen_for(best)[asked & there.all(axis=0)] <= HALF).any() or (
+            (there & ~near)[:, [each.main for each in scenario.subjects]].any()
         )
-        if self._look is None:
-            return rated[0][2], rated[0][0]
-        best = (rated[0][2], -1.0)
-        sides: set[tuple[str | None, ...]] = set()
-        for worth, seen, view in rated:
-            if worth <= best[1] or (len(sides) >= LOOKED_AT and best[1] > KEPT * worth):
-                break  # those that follow are worth less, hidden or not
-            if _side(view) not in sides:
-                sides.add(_side(view))
-                told = self._taken_from(view) * seen.worth(self._scenario, self._hidden(view, seen))
-                if told > best[1]:
-                    best = (view, told)
-        return best
+        empty = best.follows is not None and passes(best, scenario, ground_of(self.world)) < SHOWN
+        return (whole, math.inf) if short or empty else (best, worth)
+
+    def _whole(self, lens: Camera) -> Camera:
+        """The best view of all the way, from the side of a camera or another."""
+        assert self._rating is not None
+        return self._rating.best(views_of_all(lens, self._rating.scenario), worth=Shown.worth_of_all)[0]
+
+    def _with_more(self, framed: list[Camera], rating: Rating) -> list[Camera]:
+        """Cameras, and those that show what they do not: all of the way at once, or what they miss, from near."""
+        lens = (self.world.cameras or [LENS])[0]
+        found = list(framed)
+        if not any(rating.shows_all(camera) for camera in found):
+            found.append(_named(self._whole(lens), "whole"))
+        left = rating.scenario.subjects
+        while len(found) < len(framed) + MORE and (left := _missed(left, found, rating)):
+            missed, left = left[0], left[1:]
+            near = Rating(replace(rating.scenario, subjects=alone(rating.scenario.subjects, missed)), self._look)
+            view, worth = near.best(views(lens, near.scenario, self._around, steep=True))
+            if worth > 0.0:
+                found.append(_named(view, missed.prim.rsplit("/", 1)[-1]))
+        return found
 
 
 def write_views(writer: RecordingWriter, world: World, motion: Motion, named: Sequence[str] = ()) -> None:
@@ -198,16 +178,26 @@ def write_views(writer: RecordingWriter, world: World, motion: Motion, named: Se
         writer.views(Framing(world, motion, named).cameras(), motion.time, motion.body_q)
 
 
+def _any(rating: Rating, cameras: Sequence[Camera]) -> Array:
+    return np.asarray(np.any([rating.ever(camera) for camera in cameras], axis=0))
+
+
+def _missed(left: Sequence[Subject], cameras: Sequence[Camera], rating: Rating) -> list[Subject]:
+    """Those of some subjects that no camera shows for long enough, or, of what only could move, at all."""
+    shares = np.max([rating.seen_for(camera) for camera in cameras], axis=0)
+    seen = {each.prim: float(share) for each, share in zip(rating.scenario.subjects, shares, strict=True)}
+    return [each for each in left if each.able and seen[each.prim] <= (LONG if each.main else 0.0)]
+
+
 def _apart(one: Camera, other: Camera) -> float:
     """Between the ways in which two cameras look [deg]."""
     ways = [np.subtract(each.target, each.eye) / math.dist(each.target, each.eye) for each in (one, other)]
     return math.degrees(math.acos(float(np.clip(ways[0] @ ways[1], -1.0, 1.0))))
 
 
-def _side(view: Camera) -> tuple[str | None, ...]:
-    """From where a view looks, whatever it follows."""
-    way = np.subtract(view.eye, view.target)
-    return (view.follows, *(f"{part:.2f}" for part in way / np.linalg.norm(way)))
+def _named(view: Camera, what: str) -> Camera:
+    """A view as a camera of its own."""
+    return _rounded(view.model_copy(update={"prim": f"{DEFAULT_CAMERA}_{what}"}))
 
 
 def _rounded(camera: Camera) -> Camera:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 Array = np.ndarray
 WIDTH = 160  # [px] of the pictures
-TIMES = 6  # that are looked at
+SPECK = 1.5  # [px] of these: what is smaller may have none, hidden or not
 FILLS = 0.12  # of the box round it in the picture, that an object which nothing hides fills at least
 
 
@@ -35,33 +35,39 @@ class Hidden:
         self._renderer, self._built = renderer, built
         self._state: Any = built.model.state()
         self._objects = ObjectPixels(renderer.shape_prims)
+        self._counts: dict[tuple[str, int], dict[str, int]] = {}
         world = built.world
         owners: list[Body | Static] = [*world.bodies, *world.statics]
         self._opaque = {object_of(each.prim) for each in owners if each.shapes}
         self._opaque -= {object_of(each.prim) for each in owners for s in each.shapes if s.opacity < OPAQUE}
 
     def __call__(self, camera: Camera, scenario: Scenario, seen: Shown) -> Array:
-        """(S,) share of each subject that others hide, of the time that it is in the picture; clear ones are not."""
-        frames = np.unique(np.linspace(0, len(scenario.weight) - 1, TIMES).astype(int))
+        """(S,) share of each subject that others hide, of the stills that it is in; of what is clear none is."""
+        frames = np.flatnonzero(scenario.stills)
+        size = WIDTH**2 * camera.height / camera.width
         shares = np.zeros((len(frames), len(scenario.subjects)))
         weights = np.zeros_like(shares)
         for k, frame in enumerate(frames):
-            count = self._objects.count(self._picture(camera, scenario, int(frame)))
+            count = self._count(camera, scenario, int(frame))
             pixels = sum(count.values())
             for s, subject in enumerate(scenario.subjects):
-                if self._opaque.issuperset(subject.parts) and seen.inside[frame, s] >= IN and pixels:
+                large = seen.inside[frame, s] >= IN and seen.size[frame, s] * WIDTH >= SPECK
+                if self._opaque.issuperset(subject.parts) and large and pixels:
                     left, top, right, bottom = seen.box[frame, s]
-                    area = max(0.25 * (right - left) * (bottom - top) * self._size, 1.0 / FILLS)
+                    area = max(0.25 * (right - left) * (bottom - top) * size, 1.0 / FILLS)
                     shares[k, s] = 1.0 - min(1.0, sum(count.get(p, 0) for p in subject.parts) / (FILLS * area))
                     weights[k, s] = scenario.weight[frame]
         total = weights.sum(axis=0)
         return np.asarray((weights * shares).sum(axis=0) / np.where(total > 0.0, total, 1.0))
 
-    def _picture(self, camera: Camera, scenario: Scenario, frame: int) -> Array:
-        if self._built.bodies is not None and len(scenario.world.bodies):
-            q = self._state.body_q.numpy()
-            q[self._built.bodies] = scenario.motion.body_q[frame]
-            self._state.body_q.assign(q)
-        picture = self._renderer.shapes_in(camera, self._state, WIDTH)
-        self._size = picture.size
-        return picture
+    def _count(self, camera: Camera, scenario: Scenario, frame: int) -> dict[str, int]:
+        """Pixels of each object; of a view that comes again it is known."""
+        key = (camera.model_dump_json(exclude={"prim", "fixed"}), frame)
+        if key not in self._counts:
+            if self._built.bodies is not None and len(scenario.world.bodies):
+                q = self._state.body_q.numpy()
+                q[self._built.bodies] = scenario.motion.body_q[frame]
+                self._state.body_q.assign(q)
+            picture = self._renderer.shapes_in(camera, self._state, WIDTH)
+            self._counts[key] = self._objects.count(picture)
+        return self._counts[key]

@@ -46,7 +46,7 @@ def moments(world: World, motion: Motion, subjects: Sequence[Subject]) -> list[M
     if len(motion.time) < 3:
         return found
     for subject in subjects:
-        if subject.main:
+        if subject.main and subject.able:
             rows = [k for k, body in enumerate(world.bodies) if object_of(body.prim) in subject.parts]
             found += _of(subject, motion, rows)
     return sorted(found, key=lambda moment: moment.frame)

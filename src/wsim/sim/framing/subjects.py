@@ -38,6 +38,7 @@ class Subject:
         weight: How much it matters that it is seen; those of all subjects sum up to about 1.
         main: Whether the run is about it.
         able: Whether it could move.
+        asked: Whether it is named.
         body: Index of the body that a camera follows, which goes with it; None: it has none.
     """
 
@@ -48,6 +49,7 @@ class Subject:
     body: int | None = None
     parts: tuple[str, ...] = ()
     able: bool = True
+    asked: bool = False
 
     @property
     def centre(self) -> Array:
@@ -74,7 +76,7 @@ class Subject:
 def subjects(world: World, motion: Motion, named: Sequence[str] = ()) -> list[Subject]:
     """What is to be seen, the main ones first: what is named, what moves, what could, or what stands; never the ground.
 
-    What those are tied to is as one of them.
+    What those are tied to is as one of them, and so is the rope or the spring that ties it, from end to end.
 
     Args:
         world: What the stage states.
@@ -95,13 +97,23 @@ def subjects(world: World, motion: Motion, named: Sequence[str] = ()) -> list[Su
     main = [each for each in able if each.prim in asked] or movers or able or standing
     tied = _tied(world, {each.prim for each in main})
     main += [each for each in (*able, *standing) if each.prim in tied]
+    main += _cords(world, motion, {each.prim for each in main} | asked)
     mains = {each.prim for each in main}
     beside, around, idle = ([each for each in group if each.prim not in mains] for group in (movers, standing, able))
     idle = [each for each in idle if not each.moves]
+    around = [replace(each, asked=each.prim in asked) for each in around]
     return [
         *_weighed(main, MAIN, True), *_weighed(beside, BESIDE, False), *_weighed(around, STANDING, False),
         *_weighed(idle, IDLE, False),
     ]  # fmt: skip
+
+
+def alone(found: Sequence[Subject], one: Subject) -> list[Subject]:
+    """The same subjects where one is all that a view is about."""
+    return [
+        replace(each, weight=MAIN if each.prim == one.prim else STANDING / len(found), main=each.prim == one.prim)
+        for each in found
+    ]
 
 
 def _tied(world: World, prims: set[str]) -> set[str]:
@@ -111,6 +123,25 @@ def _tied(world: World, prims: set[str]) -> set[str]:
     whole = wholes(world)
     groups = [{whole.get(prim, prim) for prim in (object_of(owner) for owner in tie if owner)} for tie in ties]
     return {prim for group in groups if group & prims for prim in group - prims}
+
+
+def _cords(world: World, motion: Motion, prims: set[str]) -> list[Subject]:
+    """Springs and ropes that are asked about, or hold an object that is: what they are fixed to and run through."""
+    rows, whole, found = {body.prim: k for k, body in enumerate(world.bodies)}, wholes(world), []
+    for cord in world.cords:
+        held = {object_of(owner) for guide in cord.path if (owner := guide.owner or guide.body)}
+        if prims & {object_of(cord.prim), *held, *(whole.get(prim, prim) for prim in held)}:
+            points = np.zeros((len(motion.time), len(cord.path), 3))
+            for k, guide in enumerate(cord.path):
+                place = np.array(guide.position)
+                if guide.body is None:
+                    points[:, k] = place
+                else:
+                    poses = motion.body_q[:, rows[guide.body]]
+                    points[:, k] = poses[:, :3] + rotate(poses[:, 3:], place[None])
+            prim = object_of(cord.prim)
+            found.append(Subject(prim, points, 0.0, False, parts=(prim,), able=False))
+    return found
 
 
 def _weighed(found: list[Subject], weight: float, main: bool) -> list[Subject]:

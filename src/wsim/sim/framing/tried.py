@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.sim.framing.rooms import before_walls
 from wsim.sim.render_views import fitted, is_ground
 
 if TYPE_CHECKING:
@@ -24,25 +25,59 @@ CONTEXT = 2.5  # times what moves: what stands there and is no larger is framed 
 LEAST_HEIGHT = 0.05  # of its distance, that a camera is above the ground
 
 
-def views(camera: Camera, scenario: Scenario, around: Array) -> Iterator[Camera]:
+def views(camera: Camera, scenario: Scenario, around: Array, steep: bool = False) -> Iterator[Camera]:
     """From all sides.
 
     Args:
         camera: Whose lens and picture they have.
         scenario: What is to be seen.
         around: (F,) frames about which something happens.
+        steep: Also from high above, over walls.
     """
-    ahead = _facing(scenario)
-    sides = [(ahead + 360.0 * k / AZIMUTHS, up) for k in range(AZIMUTHS) for up in ELEVATIONS]
-    yield from _from(camera, scenario, around, [*sides, *((ahead + 90.0 * k, STEEP) for k in range(4))])
+    yield from _from(camera, scenario, around, _sides(scenario, steep))
 
 
 def views_from_there(camera: Camera, scenario: Scenario, around: Array) -> Iterator[Camera]:
     """From the side where a camera stands."""
+    yield from _from(camera, scenario, around, [_side_of(camera)])
+
+
+def views_of_all(camera: Camera, scenario: Scenario) -> Iterator[Camera]:
+    """Of all the way, with the ground below it and what stands there: where the camera stands first, and all round."""
+    whole, *_ = _stretches(scenario, np.zeros(len(scenario.weight), dtype=bool))
+    low, high = _bounds([whole])
+    ground = ground_of(scenario.world)
+    if ground < low[2] <= ground + float((high - low).max()):
+        low[2] = ground
+    around = [each.points for each in scenario.subjects if not each.main]
+    near = [points for points in around if _near(points, low, high)]
+    framed = _corners(*_bounds([_corners(low, high), *near]))
+    for azimuth, elevation in [_side_of(camera), *_sides(scenario, steep=True)]:
+        for points in (_corners(low, high), framed):
+            view = fitted(points, azimuth, elevation, camera)
+            for each in (view, *before_walls(view, points, scenario.walls)):
+                if _above(each, ground, elevation):
+                    yield each
+
+
+def _side_of(camera: Camera) -> tuple[float, float]:
+    """Azimuth and elevation of the side where a camera stands [deg]."""
     back = np.subtract(camera.eye, camera.target)
     level = math.hypot(back[0], back[1])
     azimuth = math.degrees(math.atan2(back[1], back[0])) if level > 1e-9 else -90.0
-    yield from _from(camera, scenario, around, [(azimuth, math.degrees(math.atan2(back[2], level)))])
+    return azimuth, math.degrees(math.atan2(back[2], level))
+
+
+def _sides(scenario: Scenario, steep: bool) -> list[tuple[float, float]]:
+    """Azimuth and elevation of each [deg], all round, and of a few from high above."""
+    ahead = _facing(scenario)
+    sides = [(ahead + 360.0 * k / AZIMUTHS, up) for k in range(AZIMUTHS) for up in ELEVATIONS]
+    return [*sides, *((ahead + 90.0 * k, STEEP) for k in range(4 if steep else 0))]
+
+
+def _above(view: Camera, ground: float, elevation: float) -> bool:
+    """Whether a camera stands clear of the ground, or is to look up from where it is."""
+    return view.eye[2] >= ground + LEAST_HEIGHT * math.dist(view.eye, view.target) or elevation < 0.0
 
 
 def _from(camera: Camera, scenario: Scenario, around: Array, sides: Sequence[tuple[float, float]]) -> Iterator[Camera]:
@@ -50,20 +85,21 @@ def _from(camera: Camera, scenario: Scenario, around: Array, sides: Sequence[tup
     framed = list(_stretches(scenario, around))
     for azimuth, elevation in sides:
         stands = [fitted(points, azimuth, elevation, camera) for points in framed]
+        within = [
+            v for view, points in zip(stands, framed, strict=True) for v in before_walls(view, points, scenario.walls)
+        ]
         goes = [
             fitted(points, azimuth, elevation, camera).model_copy(update={"follows": prim})
             for prim, points in _followed(scenario)
             if elevation < STEEP
         ]
-        for view in (*stands, *goes):
-            if view.eye[2] >= ground + LEAST_HEIGHT * math.dist(view.eye, view.target) or elevation < 0.0:
-                yield view
+        yield from (view for view in (*stands, *within, *goes) if _above(view, ground, elevation))
 
 
 def _stretches(scenario: Scenario, around: Array) -> Iterator[Array]:
     """Points to frame, (n, 3): of the whole run, of when something happens, of its first third."""
     main = [each for each in scenario.subjects if each.main]
-    room = ROOM * float(np.median([each.size for each in main]))
+    room = ROOM * float(np.median([each.size for each in main if each.able] or [each.size for each in main]))
     frames = len(scenario.weight)
     parts = [np.ones(frames, dtype=bool), around, np.arange(frames) <= frames // 3]
     told: list[bytes] = []
