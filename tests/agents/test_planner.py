@@ -15,6 +15,7 @@ from wsim.agents.ask import RETRIES, Desk
 from wsim.agents.chapters import planner_prompt
 from wsim.agents.failures import ModelError
 from wsim.agents.planner import HINTS, plan_with, read_plan
+from wsim.agents.shorthand import written_out
 from wsim.errors import UserError
 from wsim.plan.asked.covered import gaps, not_checked
 from wsim.plan.schema import Plan
@@ -275,3 +276,11 @@ def test_a_model_is_told_of_the_robots_that_there_are(server: Server, desk: Desk
     server.script["planner"] = [text(json.dumps(answer()))]
     plan_with(desk, PROMPT)
     assert re.search(r"Robots: .*desk_arm; .*go2, [\d. x]+ m, policies go2_walk", server.asked("planner")[0])
+
+
+def test_a_clause_may_name_a_joint_by_the_body_that_it_moves() -> None:
+    joints = [{"name": "axle", "kind": "hinge", "child": "drum"}]
+    clauses = [{"words": "turns", "by": ["drum.drive", "drum.mass", 0, "post.drive"]}]
+    assert written_out({"joints": joints, "clauses": clauses})["clauses"] == [
+        {"words": "turns", "by": ["axle.drive", "drum.mass", 0, "post.drive"]}
+    ]

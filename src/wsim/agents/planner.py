@@ -17,6 +17,7 @@ from wsim.assets import search
 from wsim.errors import UserError
 from wsim.plan.asked.covered import missing, spans
 from wsim.plan.asked.demands import REQUIRED, demands
+from wsim.plan.asked.filled import filled
 from wsim.plan.asked.tied import tied
 from wsim.plan.feasible.plan import refuse_impossible
 from wsim.plan.store import made
@@ -66,6 +67,7 @@ def plan_with(desk: Desk, prompt: str, pictures: Sequence[bytes] = (), image: st
         plan = _read(answer, prompt, known)
         if isinstance(plan, Cannot):
             return plan
+        plan = filled(plan)
         lacks = clauses_lacking(plan)
         if lacks and not kept and desk.answers("planner"):
             kept.append(plan)

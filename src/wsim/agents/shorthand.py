@@ -9,6 +9,7 @@ from wsim.errors import UserError
 from wsim.judge.language import parse
 from wsim.plan.feasible.plan import refuse_impossible
 from wsim.plan.schema import Plan
+from wsim.plan.schema.clause import OF_JOINTS, OF_OBJECTS
 from wsim.plan.store import made, parsed
 
 
@@ -42,7 +43,22 @@ def written_out(answer: dict[str, Any], where: str = "") -> dict[str, Any]:
             _objective(item, f"{where}objectives.{number}.sentence") if isinstance(item, dict) else item
             for number, item in enumerate(data["objectives"])
         ]
+    if isinstance(data.get("clauses"), list) and isinstance(data.get("joints"), list):
+        data["clauses"] = [_clause(clause, data["joints"]) for clause in data["clauses"]]
     return data
+
+
+def _clause(clause: Any, joints: list[Any]) -> Any:
+    """A clause that may name a joint's property by the body that the joint moves: "drum.drive" is its hinge's."""
+    if not isinstance(clause, dict) or not isinstance(clause.get("by"), list):
+        return clause
+    of = {joint.get("child"): joint.get("name") for joint in joints if isinstance(joint, dict)}
+
+    def meant(by: Any) -> Any:
+        name, _, field = by.partition(".") if isinstance(by, str) else ("", "", "")
+        return f"{of[name]}.{field}" if field in OF_JOINTS and field not in OF_OBJECTS and of.get(name) else by
+
+    return {**clause, "by": [meant(by) for by in clause["by"]]}
 
 
 def _object(item: dict[str, Any]) -> dict[str, Any]:

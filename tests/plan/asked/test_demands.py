@@ -144,3 +144,43 @@ def test_any_number_before_a_unit_is_read(value: float, unit: str) -> None:
     (number,) = [each for each in demands(f"A thing of {value} {unit} lies there.") if each.kind == "number"]
     assert number.text == f"{value} {unit}"
     assert number.value == pytest.approx(value * (0.01 if unit == "cm" else 1.0))
+
+
+@pytest.mark.parametrize(
+    ("prompt", "verbs"),
+    [
+        ("Three boxes on a ramp slide.", ["slide"]), ("Two balls in a tank float.", ["float"]),
+        ("The balls in the bucket bounce twice.", ["bounce"]), ("The ball left the table.", ["left"]),
+        ("Two balls on a slide.", []), ("A ball in the box.", []), ("Marbles on a wooden drop table.", []),
+        ("The ball rolls left.", ["rolls"]), ("Two left wheels turn.", ["turn"]),
+    ],
+)  # fmt: skip
+def test_a_plural_verb_is_found_behind_what_it_is_said_of(prompt: str, verbs: list[str]) -> None:
+    assert [each.text for each in demands(prompt) if each.kind == "verb"] == verbs
+
+
+@pytest.mark.parametrize(
+    ("prompt", "denied"),
+    [
+        ("Not one box falls.", True), ("Not a single box falls.", True), ("The box nearly topples.", True),
+        ("The ball fails to reach the wall.", True), ("The box rests rather than rolls.", True),
+        ("The ball stops before reaching the wall.", True), ("The ball bounces before reaching the wall.", False),
+        ("One box falls.", False),
+    ],
+)  # fmt: skip
+def test_a_denial_has_many_words(prompt: str, denied: bool) -> None:
+    assert [each for each in demands(prompt) if each.kind == "verb"][-1].denied == denied
+
+
+@pytest.mark.parametrize(
+    ("prompt", "found"),
+    [
+        ("It goes between 2 and 3 m.", [(2.0, "m"), (3.0, "m")]),
+        ("A box of 20x30x40 cm.", [(0.2, "m"), (0.3, "m"), (0.4, "m")]),
+        ("Water at 20 °C.", [(20.0, "degC")]), ("A box of 2 pounds.", [(0.907, "kg")]),
+        ("A 1:10 scale model.", []), ("At 3 o'clock a ball falls.", []), ("A Go2 walks.", []),
+    ],
+)  # fmt: skip
+def test_numbers_have_the_units_that_people_write(prompt: str, found: list[tuple[float, str]]) -> None:
+    numbers = [(round(each.value or 0.0, 3), each.unit) for each in demands(prompt) if each.kind == "number"]
+    assert numbers == found

@@ -81,3 +81,30 @@ def test_what_counts_counts_as_many(prompt: str, least: int, found: str) -> None
 )
 def test_where_it_is_not_known_who_does_it_nothing_is_objected_to(prompt: str) -> None:
     assert said(prompt, ("moves crate",), {prompt[:-1]: [0, "ball", "cart", "cork"]}) == ""
+
+
+@pytest.mark.parametrize(
+    ("prompt", "by", "fits"),
+    [
+        ("A 4 kg crate and a box fall.", "crate.mass", True), ("A 4 kg box and a crate fall.", "crate.mass", False),
+        ("A box of 4 kg and a crate fall.", "crate.mass", False), ("The crate weighs 4 kg.", "crate.mass", True),
+        ("The box weighs 4 kg, the crate less.", "crate.mass", False),
+    ],
+)  # fmt: skip
+def test_a_number_is_of_the_thing_that_it_is_said_of(prompt: str, by: str, fits: bool) -> None:
+    case = Case(prompt, ("drops(crate)", "drops(box)"), {"4 kg": [by], "fall": [0, 1]})
+    assert ("4 kg" not in {gap.demand.text for gap in missing(case.unchecked())}) == fits
+
+
+@pytest.mark.parametrize(
+    ("prompt", "objective", "fits"),
+    [
+        ("The cart pushes the box.", "pushes(cart, box)", True),
+        ("The cart pushes the box.", "pushes(box, cart)", False),
+        ("The box is pushed by the cart.", "pushes(cart, box)", True),
+    ],
+)  # fmt: skip
+def test_who_pushes_whom(prompt: str, objective: str, fits: bool) -> None:
+    verb = "pushes" if "pushes" in prompt else "pushed"
+    lines = [gap.line for gap in missing(Case(prompt, (objective,), {verb: [0]}).unchecked())]
+    assert any("and pushes has box do it" in line for line in lines) == (not fits)

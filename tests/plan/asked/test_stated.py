@@ -79,3 +79,19 @@ def test_what_more_verbs_ask_is_asked_for(prompt: str, verb: str) -> None:
     case = Case(prompt, ("moves crate",), {prompt.split()[0]: ["crate"]})
     silent = {gap.demand.text for gap in missing(case.unchecked())}
     assert (verb in silent) if verb else silent <= {"lies"}
+
+
+@pytest.mark.parametrize(
+    ("prompt", "objective", "shows"),
+    [
+        ("The ball turns.", "turned_between(ball, z, -1000 deg, 1000 deg)", False),
+        ("The ball turns.", "turned_between(ball, z, 10 deg, 1000 deg)", True),
+        ("The ball moves.", "always (speed_between(ball, 0 m/s, 1000 m/s))", False),
+        ("The ball stops.", "finally (speed_between(ball, 0 m/s, 1 cm/s))", True),
+        ("The ball hits the wall.", "never_touches(ball, wall)", False),
+        ("The ball hits the wall.", "reaches(ball, wall)", True),
+    ],
+)
+def test_what_holds_of_what_stands_still_is_no_motion(prompt: str, objective: str, shows: bool) -> None:
+    case = Case(prompt, (objective,), {prompt[:-1]: [0]})
+    assert (missing(case.unchecked()) == []) == shows

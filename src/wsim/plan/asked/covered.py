@@ -8,21 +8,23 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from wsim.plan.asked.demands import REQUIRED, SHOWN, Demand, demands
-from wsim.plan.asked.doers import counted_short, outsiders
+from wsim.plan.asked.doers import counted_short, is_of, outsiders
 from wsim.plan.asked.often import asks_again, asks_exactly, asks_often
 from wsim.plan.asked.order import turned_round, unordered
 from wsim.plan.asked.parties import strangers
-from wsim.plan.asked.shown import for_a_while, is_blow_shown, shows_not
+from wsim.plan.asked.shown import denies, for_a_while, is_blow_shown, is_idle, shows_not
 from wsim.plan.asked.stated import asks, asks_by_then, ends_by, states
 from wsim.plan.asked.tokens import tokens
-from wsim.plan.asked.vocabulary import CAUSES, SCHEDULED, SPRINGY
+from wsim.plan.asked.vocabulary import CAUSES, GOES, LETS_GO, SCHEDULED, SPRINGY, TURNS
 from wsim.plan.asked.ways import stays_there, wrong_way
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Clause, Objective, Plan
 
+UNTIED = "no clause has it"
 BLOW = "it is a blow, and no objective that is named for it asks for one: collides_with, touches"
 NOT_SHOWN = "it is not to happen, and no objective that is named for it says so: not (...), never_touches, upright"
+IDLE = "what is named for it holds of what stands still, too; ask for more"
 NOT_ALL = "it is never to happen, and what is named for it is of a part of the run: always (not ...)"
 OFTEN = "no objective that is named for it has as many events: a then b then a"
 EXACTLY = "nothing asks that it comes no more often: not (a then b then a)"
@@ -171,7 +173,7 @@ def _gap(demand: Demand, clauses: Sequence[Clause], plan: Plan) -> Gap | None:
         return Gap(demand, next(iter(reasons), why), said=bool(reasons)) if why else None
     if reasons:
         return Gap(demand, reasons[0], said=True)
-    return Gap(demand, _lacks(demand) if clauses else "no clause has it")
+    return Gap(demand, _lacks(demand) if clauses else UNTIED)
 
 
 def _unlike(demand: Demand, tied: Sequence[Clause], plan: Plan) -> str:
@@ -187,6 +189,10 @@ def _unlike(demand: Demand, tied: Sequence[Clause], plan: Plan) -> str:
             return NOT_SHOWN
         if not demand.timed and all(for_a_while(each, plan.simulation.duration) for each in denials):
             return NOT_ALL
+    if not demand.denied and demand.kind == "verb":  # what denies one thing does not show another
+        asked = [each for each in asked if not denies(each)] or asked
+        if demand.base in (GOES | TURNS) - {"go"} and all(is_idle(each) for each in asked):
+            return IDLE
     if not demand.denied and not is_blow_shown(demand.base, asked):
         return BLOW
     if why := strangers(plan, demand, asked):
@@ -227,11 +233,16 @@ def _shows(clause: Clause, demand: Demand, plan: Plan) -> bool:
         return any(asks_by_then(each, demand) for each in asked) or (bool(asked) and ends_by(short, demand))
     if demand.kind == "number":
         return any(asks(each, demand) for each in asked) or any(
-            states(plan, name, field, demand) for name, field in clause.things if not (demand.gone and field == "place")
+            states(plan, name, field, demand)
+            for name, field in clause.things
+            if not (demand.gone and field == "place") and is_of(plan, demand, name)
         )
     if demand.denied:
         return bool(asked)
     if asked or demand.kind == "state":
+        return True
+    loose = {item.name for item in plan.objects if item.state == "dynamic"}
+    if demand.base in LETS_GO and any(name in loose for name, _ in clause.things):
         return True
     scheduled = {each.name for each in plan.schedules}
     if demand.base in SCHEDULED and any(name in scheduled for name, _ in clause.things):

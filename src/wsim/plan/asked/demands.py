@@ -13,6 +13,7 @@ from wsim.plan.asked.tokens import Token, Words, text_at
 
 Kind = Literal["verb", "state", "beyond", "number", "relation", "manner", "often"]
 REQUIRED: tuple[Kind, ...] = ("verb", "state", "beyond", "number")
+_VIEWS = words.as_set("wide long close medium single one tracking aerial static establishing camera")  # a "wide shot"
 SHOWN: tuple[Kind, ...] = (*REQUIRED, "manner", "often")  # where nothing answers for it, that is said
 
 
@@ -81,7 +82,7 @@ def _found(prompt: str) -> Iterator[Demand]:
             continue
         base = words.stem(token.text)
         if base is not None and _is_verb(said, k, base, k in read.opens):
-            denied = _is_denied(read, k)
+            denied = _is_denied(read, k) or _is_missed(read, k)
             yield made(_kind_of(base), k, k, base=base, denied=denied, timed=denied and _is_timed(read, k))
         elif token.text in words.MANNERS or (
             token.text.endswith("ly") and len(token.text) > 4 and token.text not in words.NO_MANNER
@@ -113,8 +114,12 @@ def _is_verb(said: Sequence[Token], k: int, base: str, opens: bool) -> bool:
     counted = before in words.WORDS or before in words.SCALES or (digits(before) and not joined(said, k - 1))
     beside = before in ("to", "on", "its", "further") or text_at(said, k + 1) == "of"
     apart = word == "close" and text_at(said, k + 1) in ("to", "together", "by", "beside", "behind", "enough")
+    if word == "shot" and (before in _VIEWS or text_at(said, k + 1) in ("", "of", "one")):
+        return False
     if base == "end" and text_at(said, k + 1) not in ("in", "up", "on", "inside"):
         return False
+    if word == "left" and text_at(said, k + 1) not in words.DETERMINERS and before not in ("has", "have", "had"):
+        return False  # a side; "it left the table" and "has left" are verbs
     if before == "of" or apart or (counted and word == base) or (word == "left" and beside):
         return False
     if word.endswith("ing") and word != base:
@@ -126,10 +131,43 @@ def _is_verb(said: Sequence[Token], k: int, base: str, opens: bool) -> bool:
         plural = before.endswith("s") and not before.endswith("ss")
         if before == "or" and words.stem(text_at(said, k - 2)) is not None:
             return _is_verb(said, k - 2, words.stem(text_at(said, k - 2)) or "", False)
-        return plural or _set_going(said, k)
+        return plural or _set_going(said, k) or _is_of_many(said, k)
     if word.endswith("s") and word != base:
         return not (counted or (before in words.PREPOSITIONS and before not in ("out", "over", "down", "up", "off")))
     return True
+
+
+def _is_of_many(said: Sequence[Token], k: int) -> bool:
+    """Whether a base form at its clause's end is said of several: "three boxes on a ramp slide"."""
+    after = text_at(said, k + 1)
+    if after.isalpha() and after not in words.NO_NOUN and not after.endswith("ly"):
+        return False
+    i = k - 1
+    if i < 0 or not said[i].text.isalpha() or said[i].text in words.NO_NOUN:
+        return False
+    while i > 0 and (said[i].text in words.DETERMINERS or said[i].text not in words.PREPOSITIONS):
+        if said[i].text in words.NO_NOUN - words.DETERMINERS or words.stem(said[i].text) in words.MOTIONS:
+            return False
+        i -= 1
+    head = text_at(said, i - 1)
+    return (
+        said[i].text in words.PREPOSITIONS
+        and head.endswith("s")
+        and not head.endswith("ss")
+        and head not in words.NO_NOUN
+    )
+
+
+def _is_missed(read: Words, k: int) -> bool:
+    """Whether a verb is said not to come about in other words: "almost falls", "fails to reach"."""
+    said = read.said
+    one, two, three = (text_at(said, k - i) for i in (1, 2, 3))
+    if one in ("almost", "nearly") or (two, one) == ("rather", "than"):
+        return True
+    if one == "to" and (two.startswith("fail") or two in ("refuses", "unable")):
+        return True
+    stops = {words.stem(text) for text in (two, three)} & {"stop", "halt", "brake", "settle"}
+    return one == "before" and said[k].text.endswith("ing") and bool(stops)
 
 
 def _set_going(said: Sequence[Token], k: int) -> bool:
@@ -174,6 +212,10 @@ def _is_subject_denied(read: Words, i: int) -> bool:
     said = read.said
     for j in range(i, max(i - 4, -1), -1):
         text = said[j].text
+        if text in ("one", "single", "a") and text_at(said, j - 1) in ("not", "a"):  # "not one box", "not a single box"
+            continue
+        if text == "not":
+            return True
         if text in ("no", "nothing", "none", "neither", "nobody"):
             return not (text == "no" and text_at(said, j - 1) in words.PREPOSITIONS)
         partly = text == "of" or (text in words.DETERMINERS and text_at(said, j - 1) == "of")

@@ -39,8 +39,7 @@ def outsiders(plan: Plan, demand: Demand, objectives: Sequence[Objective], some:
     read = Words.of(plan.prompt)
     named = mentions(read, plan)
     verbs = {each.first for each in demands(plan.prompt) if each.kind in ("verb", "state", "beyond")}
-    does = before(read, named, verbs, demand.first) if _is_subject_known(read, named, demand.first) else ()
-    does = tuple(names for names in does if _are_named_so(read, names))
+    does = doers(plan, demand)
     about = [involved(each, plan) for each in objectives]
     known = [names for names in about if names is not None]
     if not does or not known or len(known) < len(about) or _is_object_unknown(read, named, demand.first + 1):
@@ -54,6 +53,38 @@ def outsiders(plan: Plan, demand: Demand, objectives: Sequence[Objective], some:
         if left and _is_of_all(read, named, names, demand):
             return f"it is said of all of {', '.join(sorted(names))}, and nothing that is named for it is of {left[0]}"
     return ""
+
+
+def doers(plan: Plan, demand: Demand) -> tuple[Names, ...]:
+    """Of whom a verb is said, each of several as the names of the things that it may be; empty where it is not known.
+
+    Args:
+        plan: The plan.
+        demand: The verb.
+    """
+    read = Words.of(plan.prompt)
+    named = mentions(read, plan)
+    verbs = {each.first for each in demands(plan.prompt) if each.kind in ("verb", "state", "beyond")}
+    if not _is_subject_known(read, named, demand.first):
+        return ()
+    return tuple(names for names in before(read, named, verbs, demand.first) if _are_named_so(read, names))
+
+
+def is_of(plan: Plan, number: Demand, name: str) -> bool:
+    """Whether a number may be a thing's: "a box of 3 kg", "a 3 kg box", "the box weighs 3 kg" is of no other.
+
+    Args:
+        plan: The plan.
+        number: Of its prompt.
+        name: Of a thing, a joint or a schedule.
+    """
+    read = Words.of(plan.prompt)
+    named = mentions(read, plan)
+    k = number.first
+    of = [names for end, (begin, names) in named.items() if (end == k - 2 and read.said[k - 1].text in ("of", "weighs"))
+          or (begin == number.last + 1 and begin not in read.breaks)]  # fmt: skip
+    meant = of[0] if len(of) == 1 and _are_named_so(read, of[0]) else frozenset()
+    return not meant or name not in {item.name for item in plan.objects} or name in whole_of(plan, meant)
 
 
 def counted_short(plan: Plan, demand: Demand, objectives: Sequence[Objective]) -> str:

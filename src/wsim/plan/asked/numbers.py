@@ -60,7 +60,7 @@ def numbers(said: Sequence[Token]) -> Iterator[Number]:
         k = past
     for i in range(len(found) - 2, -1, -1):
         (first, last, value, unit), (after, _, _, other) = found[i], found[i + 1]
-        if not unit and other and after == last + 2 and text_at(said, last + 1) in ("x", "×", "by", "to"):
+        if not unit and other and after == last + 2 and _ties(said, first, last + 1):
             size = found[i + 1][2]
             scale = size / read_value if (read_value := _plain(said, after)) else 1.0
             found[i] = (first, last, value * scale, other)
@@ -70,6 +70,12 @@ def numbers(said: Sequence[Token]) -> Iterator[Number]:
         yield Number(first, last, value, unit, bound, often, _limit(said, first, unit) if unit and not bound else "")
 
 
+def _ties(said: Sequence[Token], first: int, k: int) -> bool:
+    """Whether a number has the unit of the next by what is between them: "2 x 1 m", "between 2 and 3 m"."""
+    between = text_at(said, k)
+    return between in ("x", "×", "by", "to") or (between == "and" and text_at(said, first - 1) == "between")
+
+
 def digits(text: str) -> bool:
     """Whether a token is a number in digits."""
     return text[:1] in set("0123456789")
@@ -77,7 +83,8 @@ def digits(text: str) -> bool:
 
 def joined(said: Sequence[Token], k: int) -> bool:
     """Whether a number is the end of a name: "Go2"."""
-    return k > 0 and said[k - 1].end == said[k].start and said[k - 1].text.isalpha()
+    edge = said[k - 1].text == "x" and k > 1 and digits(said[k - 2].text)  # "20x30 cm"
+    return k > 0 and said[k - 1].end == said[k].start and said[k - 1].text.isalpha() and not edge
 
 
 def _is_bound(said: Sequence[Token], k: int) -> bool:
@@ -151,6 +158,8 @@ def _number(said: Sequence[Token], k: int) -> tuple[int, float] | None:
     """Where a number that begins here ends, and what it is, without its unit."""
     token, after = said[k], text_at(said, k + 1)
     if digits(token.text):
+        if after == "o'clock" or _is_of_a_ratio(said, k):
+            return None
         if joined(said, k) or (after in _ORDINAL and said[k + 1].start == token.end):
             return None
         value = _read(token.text)
@@ -169,6 +178,14 @@ def _number(said: Sequence[Token], k: int) -> tuple[int, float] | None:
     if token.text not in words.WORDS or (token.text == "one" and not _counts(said, k)):
         return None
     return _in_words(said, k)
+
+
+def _is_of_a_ratio(said: Sequence[Token], k: int) -> bool:
+    """Whether a number belongs to "1:10", of which the colon is no token: a character is between, and no word."""
+    return any(
+        i >= 0 and i + 1 < len(said) and digits(said[i].text) and digits(said[i + 1].text)
+        and said[i + 1].start - said[i].end == 1 for i in (k - 1, k)
+    )  # fmt: skip
 
 
 def _is_time(said: Sequence[Token], k: int) -> bool:
@@ -207,6 +224,8 @@ def _in_words(said: Sequence[Token], k: int) -> tuple[int, float]:
 
 def _unit(said: Sequence[Token], k: int) -> tuple[str, float, int]:
     """A unit that begins here, how many of its SI unit it is, and where it ends."""
+    if text_at(said, k) in ("°", "degrees", "deg") and text_at(said, k + 1) in ("c", "f", "celsius", "fahrenheit"):
+        return "degC", 1.0, k + 2
     for length in range(min(words.LONGEST_UNIT, len(said) - k), 0, -1):
         found = words.UNITS.get(tuple(token.text for token in said[k : k + length]))
         if found is not None:

@@ -60,6 +60,8 @@ def strangers(plan: Plan, demand: Demand, objectives: Sequence[Objective]) -> st
     if found.bears is None:
         return ""
     bears = whole_of(plan, found.bears)
+    if why := _other_way_round(plan, demand, found, objectives):
+        return why
     asked = [(involved(each, plan), shows(each, _MEETINGS)) for each in objectives]
     known = [(names, meets) for names, meets in asked if names is not None]
     if len(known) < len(asked):
@@ -71,6 +73,17 @@ def strangers(plan: Plan, demand: Demand, objectives: Sequence[Objective]) -> st
             who = f"{said_of(doer)} and {said_of(found.bears)}" if doer else said_of(found.bears)
             about = "; ".join(" and ".join(sorted(names)) for names, _ in known)
             return f"it is said of {who}, and the objectives that are named for it are about {about}"
+    return ""
+
+
+def _other_way_round(plan: Plan, demand: Demand, found: Parties, objectives: Sequence[Objective]) -> str:
+    """Why a push is that of the thing pushed; empty where it is not, or it is not known who pushes."""
+    passive = text_at(Words.of(plan.prompt).said, demand.first + 1) == "by"
+    if demand.base != "push" or demand.denied or passive or not found.does or found.bears is None:
+        return ""
+    for each in objectives:
+        if getattr(each.formula, "op", "") == "pushes" and each.object in found.bears - found.does[0]:
+            return f"it is said of {said_of(found.does[0])}, and pushes has {each.object} do it"
     return ""
 
 
@@ -170,9 +183,11 @@ def _narrowed(read: Words, begin: int, end: int, names: Names, own: dict[str, se
         return names
     said = {read.said[k].text for k in range(max(0, begin - 3), end + 1)}
     said |= {text.removesuffix("s") for text in said}
-    whole = [name for name in names if own[name] - _FLOOR <= said]
-    longest = max((len(own[name]) for name in whole), default=0)
-    return frozenset(name for name in whole if len(own[name]) == longest) or names
+    # What numbers tell apart has one name: "a 3 kg box and a 2 kg box" are box and box_1.
+    called = {name: {part for part in own[name] - _FLOOR if not part.isdigit()} for name in names}
+    whole = [name for name in names if called[name] <= said]
+    longest = max((len(called[name]) for name in whole), default=0)
+    return frozenset(name for name in whole if len(called[name]) == longest) or names
 
 
 def _behind(read: Words, named: Mentions, verbs: set[int], k: int) -> Names | None:

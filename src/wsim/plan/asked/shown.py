@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from wsim.plan.asked.nodes import nodes
 from wsim.plan.schema.formula import Always, Eventually, Not, Predicate
 
 if TYPE_CHECKING:
@@ -16,7 +17,7 @@ MOST = 0.9  # share of a run that is all of it
 BLOWS = frozenset(
     ("hit", "strike", "collide", "crash", "smash", "ram", "bump", "slam", "kick", "slap", "whack", "thump")
 )
-_BLOWS = "collides_with touches pushes topples stops_before bounces_to climbs_to rests_on"
+_BLOWS = "collides_with touches reaches pushes topples stops_before bounces_to climbs_to rests_on"
 _FALLS = """collides_with rests_on falls_freely drops topples submerged sinks floats flies bounces_to counts
 contained_in stays_inside tilts tilts_to stays_on"""
 _TURNS = "spin_between own_spin_between turned_between rolls"
@@ -128,6 +129,24 @@ def for_a_while(objective: Objective, duration: float) -> bool:
     if isinstance(top, Eventually):
         return isinstance(top.of, Not)
     return isinstance(top, Always) and top.window is not None and (top.window[1] or duration) < MOST * duration
+
+
+def is_idle(objective: Objective) -> bool:
+    """Whether what it asks is a range that holds of what stands still, too: turned by -1000 to 1000 degrees."""
+    found = [node for node, _ in nodes(objective) if isinstance(node, Predicate)]
+    if len(found) != 1:
+        return False
+    low, high = getattr(found[0], "low", None), getattr(found[0], "high", None)
+    return low is not None and high is not None and low <= 0.0 <= high
+
+
+def denies(objective: Objective) -> bool:
+    """Whether all that it asks is that something is not so."""
+    if objective.formula is None:
+        return objective.kind == "never_touches"
+    found = [str(getattr(node, "op", "")) == "never_touches" or denied for node, denied in nodes(objective)
+             if isinstance(node, Predicate)]  # fmt: skip
+    return bool(found) and all(found)
 
 
 def shows_not(objective: Objective, base: str) -> bool:

@@ -36,13 +36,14 @@ def tied(plan: Plan) -> Plan:
 
 
 def _clause(plan: Plan, demand: Demand) -> Clause:
-    by: list[int | str] = [] if demand.kind == "beyond" else list(_evidence(plan, demand))
+    by: list[int | str] = [] if demand.kind == "beyond" else list(evidence(plan, demand))
     if by:
         return Clause(words=demand.text, by=by)
     return Clause(words=demand.text, unchecked=UNFOUND if demand.kind == "number" else UNASKED)
 
 
-def _evidence(plan: Plan, demand: Demand) -> Iterator[int | str]:
+def evidence(plan: Plan, demand: Demand) -> Iterator[int | str]:
+    """What of a plan shows a demand of its prompt: objectives by number, things and their properties by name."""
     if demand.kind == "number":
         yield from _of_number(plan, demand)
         return

@@ -38,6 +38,8 @@ GOES = as_set(
     slide slip speed throw toss travel walk
     """
 )
+LETS_GO = as_set("release")  # of what is free from the start on, that it is there shows it
+TURNS = as_set("turn spin rotate revolve pivot swivel whirl twirl")
 # What sets a thing going: its start may show it as well, a velocity, a drive.
 CAUSES = as_set(
     """
@@ -164,7 +166,8 @@ _TIMES = {
     3600.0: "h hour hours",
 }  # fmt: skip
 _OTHERS = {
-    "kg": {1.0: "kg kilogram kilograms kilo kilos", 0.001: "g gram grams", 1000.0: "tonne tonnes ton tons"},
+    "kg": {1.0: "kg kilogram kilograms kilo kilos", 0.001: "g gram grams", 1000.0: "tonne tonnes ton tons",
+           0.45359237: "lb lbs pound pounds", 0.02834952: "oz ounce ounces"},
     "deg": {
         1.0: "deg degree degrees °", 360.0: "revolution revolutions turn turns",
         math.degrees(1.0): "rad radian radians",

@@ -16,6 +16,13 @@ _WITH_ANOTHER = ("touches", "never_touches", "collides_with", "pushes", "rests_o
                  "contained_in", "stays_inside", "weighs_on", "stops_before")  # fmt: skip
 
 
+_LOOSE = {  # what is as loose as this holds of anything
+    "upright": ("within", 90.0, "deg"), "settles": ("speed", 1.0, "m/s"), "touches": ("within", 1.0, "m"),
+    "rests_on": ("within", 1.0, "m"), "lies_on": ("within", 1.0, "m"), "stays_on": ("within", 1.0, "m"),
+}  # fmt: skip
+_LITTLE = {"moves": ("least", 1e-4, "m"), "drops": ("share", 0.01, "of its height")}
+
+
 def kind_faults(plan: Plan) -> Iterator[str]:
     """All of them."""
     items = {item.name: item for item in plan.objects}
@@ -36,6 +43,13 @@ def _cannot(each: Said, item: PlanObject | None, items: dict[str, PlanObject], t
         return ""
     if each.name in _WITH_ANOTHER and each.ref == each.object:
         return "it is said of a thing and itself; name another"
+    for table, sign in ((_LOOSE, 1.0), (_LITTLE, -1.0)):
+        field, limit, unit = table.get(each.name, ("", 0.0, ""))
+        value = each.fields.get(field)
+        if value is not None and sign * value >= sign * limit:
+            return (
+                f"{field} {value:g} {unit} holds of anything; ask for {'less' if sign > 0 else 'more'} than {limit:g}"
+            )
     on = items.get(each.ref or "")
     if each.name in _ROLLS and item.primitive == "box" and not item.assembled and item.name not in tied:
         return "a box does not roll; take a sphere, a capsule or a cylinder, or ask that it slides"
