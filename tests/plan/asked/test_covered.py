@@ -85,7 +85,7 @@ def test_a_reason_for_everything_that_happens_is_no_answer() -> None:
     ("clause", "message"),
     [
         ({"words": "flies", "by": [1]}, r"clauses\.0\.by: no objective 1; the plan has 1, and they count from 0"),
-        ({"words": "flies", "by": ["bird"]}, r"clauses\.0\.by: no object, joint, cord or schedule 'bird'"),
+        ({"words": "flies", "by": ["bird"]}, r"clauses\.0\.by: no object, joint, cord, schedule or camera 'bird'"),
         ({"words": "flies", "by": ["ball.mood"]}, r"clauses\.0\.by: ball has no 'mood' that is checked; it has size"),
         ({"words": "flies"}, r'give "by", the objectives and objects that show it, or "unchecked"'),
         ({"words": "flies", "by": [0], "unchecked": "so"}, r'give "by"'),
@@ -239,3 +239,10 @@ def test_two_that_hang_on_one_frame_are_two(struck: str) -> None:
                               clauses=[{"words": "The ball hits the right bob", "by": [0]}]))  # fmt: skip
     made = Plan.model_validate(full | {"prompt": "The ball hits the right bob."})
     assert [gap.demand.text for gap in missing(made)] == ([] if struck == "right_bob" else ["hits"])
+
+
+def test_a_camera_answers_for_the_view() -> None:
+    view = {"name": "wide", "eye": [4, -4, 2], "target": [0, 0, 0]}
+    clauses = [{"words": "In a wide shot", "by": ["wide"]}, {"words": "flies half a metre", "by": [0]}]
+    made = plan(clauses, "In a wide shot a ball flies half a metre.", cameras=[view])
+    assert (missing(made), not_checked(made)) == ([], [])

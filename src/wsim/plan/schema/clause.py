@@ -26,8 +26,8 @@ class Clause(Sparse):
 
     Attributes:
         words: As they stand in the prompt, one after another.
-        by: Numbers of objectives, counted from 0; names of objects, joints, cords, schedules, a property with a
-            dot: "puck.mass".
+        by: Numbers of objectives, counted from 0; names of objects, joints, cords, schedules, cameras, a property with
+            a dot: "puck.mass".
         unchecked: Why nothing shows that they came true; given in place of `by`.
     """
 

@@ -18,6 +18,7 @@ def clause_problems(plan: Draft) -> Iterator[str]:
         (plan.schedules, OF_SCHEDULES), (plan.cords, OF_CORDS), (plan.joints, OF_JOINTS), (plan.objects, OF_OBJECTS),
     ):  # fmt: skip
         fields |= {each.name: checked for each in things}
+    fields |= {camera.name: () for camera in plan.cameras if camera.name not in fields}  # "a wide shot" is one
     for i, clause in enumerate(plan.clauses):
         for number in clause.objectives:
             if number >= len(plan.objectives):
@@ -26,7 +27,8 @@ def clause_problems(plan: Draft) -> Iterator[str]:
                 )
         for name, field in clause.things:
             if name not in fields:
-                kinds = "object, joint, cord or schedule"
+                kinds = "object, joint, cord, schedule or camera"
                 yield f"clauses.{i}.by: no {kinds} {name!r}; name one, or an objective by its number"
             elif field and field not in fields[name]:
-                yield f"clauses.{i}.by: {name} has no {field!r} that is checked; it has {', '.join(fields[name])}"
+                has = ", ".join(fields[name]) or "none"
+                yield f"clauses.{i}.by: {name} has no {field!r} that is checked; it has {has}"
