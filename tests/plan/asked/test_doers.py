@@ -43,6 +43,7 @@ def test_what_is_asked_of_another_shows_nothing(
         ("Three balls fall.", (1, 2, 3), ""),
         ("All the balls fall.", (2, 3), "ball_1"), ("The three balls fall.", (2, 3), "ball_1"),
         ("The balls fall.", (2,), ""), ("A ball falls.", (2,), ""),  # no number of three is said
+        ("Two of three balls fall.", (1, 2), ""), ("Only one of the three balls falls.", (2,), ""),
         ("Neither of the balls falls.", (1, 2), "ball_3"), ("None of the balls falls.", (1, 2, 3), ""),
     ],
 )  # fmt: skip

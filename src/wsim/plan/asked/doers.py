@@ -146,6 +146,8 @@ def _is_of_all(read: Words, named: Mentions, names: Names, demand: Demand) -> bo
     told = {read.said[k].text for k in here if not {*range(k + 1, begin)} & read.breaks}
     if told & _ALL or (demand.denied and "no" in told):
         return True
+    if "of" in told:  # "two of three balls"
+        return False
     counts = [n.value for n in numbers(read.said) if n.last in here and not n.unit]
     return counts[-1:] == [len(names)]
 
