@@ -163,6 +163,31 @@ def test_a_sound_plan_is_kept_where_clauses_are_all_that_it_lacks(server: Server
     assert [(clause.words, clause.by) for clause in plan.clauses] == [("flies", [0]), ("half a metre", [0])]
 
 
+HIT = {"kind": "formula", "object": "ball", "sentence": "collides_with(ball, ground)"}
+
+
+@pytest.mark.parametrize(
+    ("more", "by"),
+    [
+        ({"clauses": [{"words": "hits", "by": [1]}], "objectives": [HIT]}, [1]),
+        ({"clauses": [{"words": "hits", "by": [7]}]}, None),  # of no objective there is: asked again, in vain
+        (answer(clauses=[*CLAUSES, {"words": "hits", "by": [1]}], objectives=[MOVES, HIT]), [1]),  # all of it again
+    ],
+)
+def test_clauses_that_lack_are_asked_for_by_themselves(
+    server: Server, desk: Desk, more: Any, by: list[int] | None
+) -> None:
+    prompt = f"{PROMPT.rstrip('.')} and hits the ground."
+    server.script["planner"] = [text(json.dumps(answer(clauses=CLAUSES)))]
+    server.forever["planner"] = text(json.dumps(more))
+    plan = plan_with(desk, prompt)
+    assert [clause.by for clause in plan.clauses if clause.words == "hits"] == ([] if by is None else [by])
+    assert [clause.words for clause in plan.clauses[: len(CLAUSES)]] == ["A thrown ball", "flies half a metre"]
+    first, second = server.asked("planner")[:2]
+    assert "'hits': no clause has it" in second and "0 moves ball" in second and "objects: ground, ball" in second
+    assert len(second) < 0.25 * len(first)
+
+
 SHATTERS = "A thrown ball flies half a metre and shatters."
 WHY = "a ball that shatters: bodies are rigid"
 CANNOT = json.dumps({"cannot": WHY, "nearest": answer()})

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from wsim.agents.ask import UnusableError, object_in
 from wsim.agents.chapters import asked_for, chapters_for, planner_prompt, told
+from wsim.agents.clauses import ask_for_clauses
 from wsim.agents.failures import ModelError
 from wsim.agents.robots import robots_for
 from wsim.agents.shorthand import written_out
@@ -58,7 +59,7 @@ def plan_with(desk: Desk, prompt: str, pictures: Sequence[bytes] = (), image: st
         known = {"path": image, "sha256": sha256(pictures[0]).hexdigest()}
         request.append(f"A reference picture is attached ({image}); fill image.hints from it: {HINTS}")
     request += [_catalogue(prompt), robots_for(prompt)]
-    kept: list[Plan] = []  # sound but for its clauses, for which a model is asked once
+    sound: list[tuple[Plan, dict[str, Any]]] = []  # with the answers that they were made of
 
     def read(text: str) -> Plan | Cannot:
         answer = object_in(text)
@@ -67,24 +68,42 @@ def plan_with(desk: Desk, prompt: str, pictures: Sequence[bytes] = (), image: st
         plan = _read(answer, prompt, known)
         if isinstance(plan, Cannot):
             return plan
-        plan = filled(plan)
-        lacks = clauses_lacking(plan)
-        if lacks and not kept and desk.answers("planner"):
-            kept.append(plan)
-            raise UnusableError(lacks)
-        return _with_clauses(plan) if kept else plan
+        first, plan = not sound, filled(plan)
+        sound.append((plan, answer))
+        if first and passes_over_the_impossible(plan) and desk.answers("planner"):
+            raise UnusableError(clauses_lacking(plan))  # which another plan may have to stand in for
+        return plan
 
     try:
         found = desk.ask(
             "planner", "\n\n".join(request), read, pictures=pictures, told=planner_prompt(chapters_for(prompt))
         )
     except ModelError:
-        if not kept:
+        if not sound:
             raise
-        return _with_clauses(kept[0])
+        found = sound[-1][0]
     if isinstance(found, Cannot):
         raise ModelError("cannot", found.why, "planner")
-    return found
+    lacks = clauses_lacking(found)
+    if not lacks or len(sound) > 1 or not desk.answers("planner"):
+        return _with_clauses(found) if lacks else found
+    return _with_clauses(_tied(desk, found, sound[-1][1], lacks, prompt, known))
+
+
+def _tied(desk: Desk, plan: Plan, answer: dict[str, Any], lacks: str, prompt: str, picture: dict[str, str]) -> Plan:
+    """The plan with the clauses that its model adds; as it is where the model adds none that can be used."""
+    own = answer["nearest"] if "cannot" in answer else answer
+
+    def again(mended: dict[str, Any]) -> Plan:
+        read = _read({**answer, "nearest": mended} if "cannot" in answer else mended, prompt, picture)
+        if isinstance(read, Cannot):
+            raise UnusableError("the plan is sound: add to its clauses alone")
+        return filled(read)
+
+    try:
+        return ask_for_clauses(desk, plan, own, lacks, again)
+    except ModelError:
+        return plan
 
 
 @dataclass(frozen=True)
@@ -111,6 +130,11 @@ def _read(answer: dict[str, Any], prompt: str, picture: dict[str, str]) -> Plan 
 def _with_clauses(plan: Plan) -> Plan:
     """A plan whose model was asked for clauses: without any it gets those that its words alone give."""
     return plan if plan.clauses else tied(plan)
+
+
+def passes_over_the_impossible(plan: Plan) -> bool:
+    """Whether the prompt has what nothing in wsim does, and the plan says nothing of it."""
+    return any(gap.demand.kind == "beyond" for gap in missing(plan))
 
 
 def clauses_lacking(plan: Plan) -> str:
