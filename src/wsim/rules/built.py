@@ -10,9 +10,10 @@ from itertools import combinations
 
 from wsim.defaults import GRAVITY
 from wsim.errors import UserError
+from wsim.plan.asked.nodes import speaks_of
 from wsim.plan.layout.bodies import around
 from wsim.plan.layout.boxes import Box
-from wsim.plan.schema import Objective, Plan, PlanObject
+from wsim.plan.schema import Plan, PlanObject
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.lexicon import lexicon
 from wsim.rules.places import SIDES
@@ -88,10 +89,10 @@ def _met(thing: Thing, own: list[PlanObject], plan: Plan, names: Names) -> list[
         falls = other is not None and other is thing.target and bool({"topple"} & {*other.does} or other.off)
         asked = any(
             named & theirs and (falls or named & {item.name for item in own})
-            for named in (_involved(each) for each in plan.objectives)
+            for named in (speaks_of(each) for each in plan.objectives)
         )
         several = other is not None and other is thing.target and other.count > 1 and not _is_one(other)
-        each = not several or theirs <= {name for one in plan.objectives for name in _involved(one)}
+        each = not several or theirs <= {name for one in plan.objectives for name in speaks_of(one)}
         if other is not None and not (asked and each):
             found.append(f"into {other.words}")
     return found
@@ -101,11 +102,6 @@ def _is_one(thing: Thing) -> bool:
     """Whether several are spoken of as one, such as a row."""
     groups = {word for words, entry in lexicon().entries.items() if entry.terminal == "GROUP" for word in words}
     return bool(groups & {*thing.words.split()})
-
-
-def _involved(objective: Objective) -> set[str]:
-    found = {name for name in (objective.object, objective.ref) if name is not None}
-    return found | (set() if objective.formula is None else set(objective.formula.names()))
 
 
 def _beside(thing: Thing, own: list[PlanObject], plan: Plan, names: Names) -> list[str]:
@@ -144,7 +140,7 @@ def _check_ways(plan: Plan, cast: Cast, names: Names) -> None:
     aims = {name for name, thing in of.items() if thing.target is not None or thing.meets is not None}
     level = [plan.object(name) for name in of if name not in aims]
     level = [item for item in level if item.pose is not None and not item.velocity[2]]
-    asked = [_involved(each) for each in plan.objectives]
+    asked = [speaks_of(each) for each in plan.objectives]
     for a, b in combinations(level, 2):
         still = not any(a.velocity) and not any(b.velocity)
         if still or of[a.name] is of[b.name] or any({a.name, b.name} <= named for named in asked):

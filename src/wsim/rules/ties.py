@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 from wsim.plan.asked.demands import REQUIRED, Demand, demands
+from wsim.plan.asked.nodes import speaks_of
 from wsim.plan.asked.tokens import tokens
 from wsim.plan.schema import Clause, Objective, Plan
 from wsim.rules.cast import CARRIERS, Cast, Thing
@@ -78,14 +79,9 @@ def _comes_to_be(at: int, cast: Cast) -> bool:
 
 def _is_of(each: int | str, who: set[str], known: set[str], plan: Plan) -> bool:
     if isinstance(each, int):
-        return bool(_involved(plan.objectives[each]) & who)
+        return bool(speaks_of(plan.objectives[each]) & who)
     name = each.partition(".")[0]
     return name in who or name not in known  # a joint, a cord, a schedule, the run
-
-
-def _involved(objective: Objective) -> set[str]:
-    found = {name for name in (objective.object, objective.ref) if name is not None}
-    return found | (set() if objective.formula is None else set(objective.formula.names()))
 
 
 def _place(prompt: str, demand: Demand) -> int | None:

@@ -75,9 +75,8 @@ class Tokens:
             if token.type == "SHAPE" and tokens and tokens[-1].type == "LENGTH":
                 token.type, token.meaning = "DIMENSION", token.meaning[0]  # "1 m long"
             if token.type == "SIDE" and tokens and (tokens[-1].type == "LENGTH" or _is_height(tokens)):
-                tokens[
-                    -1
-                ].type = "OFFSET"  # "20 cm behind", "is dropped 2 m behind": the distance, not a size or height
+                # "20 cm behind", "is dropped 2 m behind": the distance, not a size or height.
+                tokens[-1].type = "OFFSET"
             last = tokens[-1].type if tokens else ""
             if token.type == "COUNT" and str(token) == "one" and last in _LOOKS:
                 token.type = "ONE"  # "a small one"

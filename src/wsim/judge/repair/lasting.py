@@ -33,7 +33,8 @@ def settled(finding: Finding, evidence: Evidence) -> RepairTarget:
     i = evidence.index(prim)
     speed = np.linalg.norm(evidence.body_qd[:, i, :3], axis=1)
     end = float(evidence.time[-1])
-    stands = np.flatnonzero(speed > (finding.limit or 0.0))[-1] + 1 if np.any(speed > (finding.limit or 0.0)) else 0
+    moving = np.flatnonzero(speed > (finding.limit or 0.0))
+    stands = int(moving[-1]) + 1 if len(moving) else 0
     if finding.limit and stands < len(speed):  # it does come to rest, and the final window begins before
         wanted = (1.0 + ROOM / 2) * span_for(float(evidence.time[stands] - evidence.time[0]))
         if wanted > end - float(evidence.time[0]):

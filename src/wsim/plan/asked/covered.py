@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from wsim.plan.asked.demands import REQUIRED, SHOWN, Demand, demands
 from wsim.plan.asked.doers import counted_short, is_of, outsiders
+from wsim.plan.asked.nodes import speaks_of
 from wsim.plan.asked.often import asks_again, asks_exactly, asks_often
 from wsim.plan.asked.order import turned_round, unordered
 from wsim.plan.asked.parties import strangers
@@ -256,8 +257,7 @@ def _of_spring(objective: Objective, plan: Plan) -> bool:
     for joint in plan.joints:
         if joint.drive is not None and joint.drive.stiffness > 0.0:
             ends |= {joint.child, joint.parent}
-    named = {objective.object} | (set() if objective.formula is None else set(objective.formula.names()))
-    return bool(named & ends)
+    return bool(speaks_of(objective) & ends)
 
 
 def _counted(clause: Clause, demand: Demand) -> bool:

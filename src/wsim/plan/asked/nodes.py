@@ -22,3 +22,9 @@ def nodes(objective: Objective) -> Iterator[tuple[Node, bool]]:
 
     if objective.formula is not None:
         yield from below(objective.formula, False)
+
+
+def speaks_of(objective: Objective) -> set[str]:
+    """All things that it speaks of."""
+    found = {name for name in (objective.object, objective.ref) if name is not None}
+    return found | (set() if objective.formula is None else objective.formula.names())

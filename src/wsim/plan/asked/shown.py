@@ -63,29 +63,6 @@ NOT_SHOWN_BY = {base: frozenset(names.split()) for verbs, names in _NOT_SHOWN fo
 # What a thing does itself, whatever it does it on or into.
 _ITSELF = """float sink swing bounce rebound slide roll fall drop land plunge plummet plop topple tumble stop settle"""
 BY_ITSELF = frozenset(_ITSELF.split())
-SHOWN_BY = {base: frozenset(names.split()) for verbs, names in _NOT_SHOWN for base in verbs.split()}
-# What a thing does itself, whatever it does it on or into.
-BY_ITSELF = frozenset(
-    [
-        "float",
-        "sink",
-        "swing",
-        "bounce",
-        "rebound",
-        "slide",
-        "roll",
-        "fall",
-        "drop",
-        "land",
-        "plunge",
-        "plummet",
-        "plop",
-        "topple",
-        "tumble",
-        "stop",
-        "settle",
-    ]
-)
 SHOWN_BY = {base: frozenset(names.split()) for verbs, names in _SHOW for base in verbs.split()}
 
 
