@@ -54,8 +54,13 @@ def simulate(
     observe: Callable[[float], None] | None = None,
     rigid: object | None = None,
     dt: float | None = None,
+    after_step: Callable[[], None] | None = None,
+    before_step: Callable[[], None] | None = None,
 ) -> int:
-    """Step for `seconds`, calling `observe(t)` at `samples` even times; on CUDA through a graph. Returns the steps."""
+    """Step for `seconds`, calling `observe(t)` at `samples` even times; on CUDA through a graph. Returns the steps.
+
+    `before_step` and `after_step` are called in every step and captured with it: they may launch kernels, not read.
+    """
     dt = min(solver.config.max_time_step, seconds / samples, dt or math.inf)
     every = math.ceil(seconds / samples / dt)
     dt = seconds / samples / every
@@ -64,9 +69,13 @@ def simulate(
     def interval() -> None:
         for _ in range(every):
             state.clear_forces()
+            if before_step is not None:
+                before_step()
             solver.step(state, state, control, None, dt)
             if rigid is not None:
                 rigid.step(state, state, control, None, dt)
+            if after_step is not None:
+                after_step()
 
     graph = None
     for sample in range(samples):
