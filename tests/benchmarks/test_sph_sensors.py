@@ -38,7 +38,7 @@ def test_sensors_read_the_weight_of_still_water():
         after_step=lambda: sensors.feel(state.particle_q),
     )
     off = np.mean(read[50:], axis=0) / (RHO * G * (DEPTH - heights)) - 1.0
-    # Beside the floor the water stands a little closer than on its lattice: measured 6 %, and at most 1.2 % from three on.
+    # Beside the floor the water stands closer than on its lattice: measured 6 %, and at most 1.2 % from three on.
     assert np.abs(off[0]) < 0.1
     assert np.abs(off[2:]).max() < 0.02
     assert sensors.read(1) == pytest.approx(np.zeros(5))  # reading starts anew
