@@ -25,7 +25,7 @@ import warp as wp
 
 from benchmarks.sph_cases.dam_break import front_of, pressure_at_release
 from benchmarks.sph_cases.sensors import WallSensors
-from benchmarks.sph_cases.water import add_fluid, lattice, make_builder, simulate
+from benchmarks.sph_cases.water import add_fluid, lattice, make_builder, simulate, steps_in
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
 
@@ -116,7 +116,7 @@ def release(device: str, spacing: float, height: float, seconds: float) -> Run:
     corner = np.array([LENGTH, 0.5 * breadth, top])
     sensors = WallSensors(solver, points, np.tile([-1.0, 0.0, 0.0], (len(names), 1)), corner * (0, -1, 0), corner)
     samples = round(seconds * RATE)
-    steps = math.ceil(1.0 / (RATE * config.max_time_step))
+    steps, _ = steps_in(solver, seconds, samples)
     rows: list[tuple[float, ...]] = []
     fronts = [(0.0, COLUMN)]
 

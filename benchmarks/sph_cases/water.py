@@ -46,6 +46,13 @@ def lattice(low: tuple[float, ...], high: tuple[float, ...], spacing: float, pla
     return box_lattice(high_ - low_, spacing).position + 0.5 * (low_ + high_)
 
 
+def steps_in(solver: SolverSPH, seconds: float, samples: int, dt: float | None = None) -> tuple[int, float]:
+    """How many steps `simulate` takes between two samples, and how long they are [s]."""
+    dt = min(solver.config.max_time_step, seconds / samples, dt or math.inf)
+    every = math.ceil(seconds / samples / dt)
+    return every, seconds / samples / every
+
+
 def simulate(
     solver: SolverSPH,
     state: newton.State,
@@ -61,9 +68,7 @@ def simulate(
 
     `before_step` and `after_step` are called in every step and captured with it: they may launch kernels, not read.
     """
-    dt = min(solver.config.max_time_step, seconds / samples, dt or math.inf)
-    every = math.ceil(seconds / samples / dt)
-    dt = seconds / samples / every
+    every, dt = steps_in(solver, seconds, samples, dt)
     control = solver.model.control()
 
     def interval() -> None:
