@@ -2,8 +2,8 @@
 
 The bucket is a body of five slabs, led by its pose, 0.3 m wide inside; 0.12 m of water starts with its turn, level,
 and has to find the paraboloid by itself: it swings at first. At 5 rad/s the corners are 57 mm above the middle. The
-curvature is that of the least-squares fit of h0 + kappa r^2 to the heights over the floor, which the sums of V and V r^2
-give, the mean over the last half of three seconds; a particle is a cube of a spacing in it. `turn` is the water's
+curvature is that of the least-squares fit of h0 + kappa r^2 to the heights over the floor, which the sums of V and
+V r^2 give, the mean over the last half of three seconds; a particle is a cube of a spacing in it. `turn` is the water's
 angular momentum against that of a solid turn of the same water: what the walls have failed to keep up.
 """
 

@@ -1,9 +1,11 @@
-"""The plane cases with jets, led bodies and slopes at their coarsest, on the CPU, and what they are made of."""
+"""The cases with jets, bodies that are led or held, and slopes, on the CPU, and what they are made of."""
+
+import dataclasses
 
 import numpy as np
 import pytest
 
-from benchmarks.sph_cases import jet_plate, solitary_runup, wave_maker, wedge_entry
+from benchmarks.sph_cases import floor_lift, jet_plate, rotating_bucket, solitary_runup, wave_maker, wedge_entry
 
 
 def test_a_jet_gives_the_plate_its_momentum():
@@ -42,3 +44,35 @@ def test_the_solitary_wave_starts_without_divergence():
     at = cells[k]
     assert velocity[k, 0] == pytest.approx(u(at[0]))
     assert velocity[k, 2] / at[2] == pytest.approx(-(u(at[0] + e) - u(at[0] - e)) / (2.0 * e), rel=1e-4)
+
+
+def test_curvature_of_a_paraboloid_over_a_square():
+    spacing, kappa = 0.3 / 40, 1.3
+    x = (np.arange(40) + 0.5) * spacing - 0.15
+    r2 = (x[:, None] ** 2 + x**2).ravel()
+    place = np.stack([np.repeat(x, 40), np.tile(x, 40), 0.0 * r2], axis=1)
+    height = 0.1 + kappa * r2
+    # A hundred particles a metre of height in each column.
+    column = np.repeat(place, np.round(1e4 * height).astype(int), axis=0)
+    found = rotating_bucket.curvature(column, 1e-4 * spacing**2, spacing)
+    assert found == pytest.approx(kappa, rel=0.01)
+
+
+def test_a_bucket_turns_its_water():
+    found = rotating_bucket.run("cpu", 0.03, seconds=0.5)
+    assert found.errors["turn"] < 5.0  # measured: 2.6 %
+    assert found.figures["water below the floor [particles]"] == 0
+
+
+@pytest.mark.parametrize("name", floor_lift.SHAPES)
+def test_volumes_of_shapes_are_those_of_their_insides(name):
+    shape = floor_lift.SHAPES[name]
+    axis = (np.arange(60) + 0.5) / 60 * 0.2 - 0.1
+    points = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1).reshape(-1, 3)
+    assert (shape.depth(points) > 0.0).mean() * 0.2**3 == pytest.approx(shape.volume, rel=0.02)
+
+
+def test_a_prism_over_the_floor_has_its_lift():
+    shape = dataclasses.replace(floor_lift.SHAPES["prism"], over=1.0)
+    found, _ = floor_lift.lift("cpu", 0.02, shape, 0.5)
+    assert found == pytest.approx(floor_lift.RHO * floor_lift.G * shape.volume, rel=0.05)  # measured: 0.2 %
