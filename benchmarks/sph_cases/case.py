@@ -55,10 +55,10 @@ class Measured:
     errors: dict[str, float]
     figures: dict[str, float] = field(default_factory=dict)
     curves: dict[str, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
-    values: dict[str, Value] = field(default_factory=dict)
     particles: int = 0
     simulated_seconds: float = 0.0
     wall_seconds: float = 0.0
+    values: dict[str, Value] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -60,7 +60,7 @@ def test_curvature_of_a_paraboloid_over_a_square():
 
 def test_a_bucket_turns_its_water():
     found = rotating_bucket.run("cpu", 0.03, seconds=0.5)
-    assert found.errors["turn"] < 5.0  # measured: 2.6 %
+    assert found.errors["turn"] < 6.0  # measured: 4.1 %; 2.0 % at 15 mm
     assert found.figures["water below the floor [particles]"] == 0
 
 
