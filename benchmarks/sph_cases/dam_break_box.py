@@ -1,6 +1,8 @@
-"""A column of water breaks loose and hits a box: Kleefsman et al. (2005), J. Comput. Phys. 206, 363-393; SPHERIC test 2.
+"""A column of water breaks loose and hits a box: SPHERIC's test 2.
 
-A tank of 3.22 m x 1 m, a column 1.228 m long and 0.55 m high, and 1.1675 m from it a box of 0.161 m x 0.403 m x 0.161 m.
+Kleefsman et al. (2005), J. Comput. Phys. 206, 363-393: a tank of 3.22 m x 1 m, a column 1.228 m long and 0.55 m high,
+and 1.1675 m from it a box of 0.161 m x 0.403 m x 0.161 m.
+
 Pressures are on the face of the box at 21, 61, 101 and 141 mm over the floor, 29 mm off the middle; water heights are
 2.228 m (H2, before the box) and 0.582 m (H4, in the column) from the wall behind the column. The experiment's records
 are those of MARIN.
