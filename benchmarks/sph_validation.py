@@ -138,6 +138,11 @@ def print_table(rows: list[tuple[str, ...]]) -> None:
         print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
 
 
+def bold_misses(row: tuple[str, ...]) -> tuple[str, ...]:
+    """A row for Markdown, where what misses its reach stands out."""
+    return tuple(f"**{cell}**" if cell.startswith("MISSED") else cell for cell in row)
+
+
 def describe(device: str) -> dict[str, str]:
     """What the numbers were measured with."""
     about = wp.get_device(device)
@@ -255,7 +260,7 @@ def main(arguments: list[str] | None = None) -> int:
     if args.json:
         write_text(args.json, json.dumps(plain(as_json(runs, device, fine)), indent=1) + "\n")
     if args.markdown:
-        lines = [" | ".join(row) for row in [HEADER, ("---",) * len(HEADER), *rows]]
+        lines = [" | ".join(row) for row in [HEADER, ("---",) * len(HEADER), *map(bold_misses, rows)]]
         write_text(args.markdown, "".join(f"| {line} |\n" for line in lines))
     if args.plots:
         write_plots(runs, args.plots)
