@@ -96,7 +96,7 @@ def largest_step(world: World, config: ConfigSPH) -> float:
 
 
 def expected_speed(world: World) -> float:
-    """Largest speed that the fluid should see [m/s]: its start, gravity waves or a collapse, and bodies that fall in."""
+    """Largest speed that the fluid should see [m/s]: its start, waves or a collapse, and bodies that fall in."""
     g = float(np.linalg.norm(world.gravity))
     speeds = [0.1]
     for fluid in world.fluids:
