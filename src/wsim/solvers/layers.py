@@ -48,6 +48,35 @@ def mesh_layers(vertices: Array, triangles: Array, spacing: float, convex: bool)
     return Samples(position, volume * (abs(float(solid.volume)) / volume.sum()))
 
 
+def mesh_part(
+    depth_of: Callable[[Array], Array], low: Array, high: Array, spacing: float, shell: float
+) -> Samples:  # fmt: skip
+    """Particles of the part of a solid that is in a box, less than `shell` below its surface.
+
+    Each part is filled for itself, with what of the solid is in it: parts that meet fill it together, with volumes that
+    add up, whichever comes first.
+
+    Args:
+        depth_of: How deep points are below the surface [m].
+        low: Lower corner of the box [m].
+        high: Upper corner.
+        spacing: Between particles [m].
+        shell: Thickness [m].
+    """
+    counts, edge = zip(*(lattice_axis(float(length), spacing) for length in high - low), strict=True)
+    edge = np.array(edge)
+    ticks = [low[k] + (np.arange(counts[k]) + 0.5) * edge[k] for k in range(3)]
+    cells = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
+    depth = depth_of(cells)
+    cells, depth = cells[depth < shell], depth[depth < shell]
+    deep = depth >= RELAXED * spacing
+    near = ~deep & (depth > -float(np.linalg.norm(edge)))
+    outer = _spread(cells[near], depth[near], edge, spacing, depth_of)
+    inside = np.clip(outer.position, low, np.nextafter(high, low))
+    volume = np.concatenate([outer.volume, np.full(int(deep.sum()), np.prod(edge))])
+    return Samples(np.concatenate([inside, cells[deep]]), volume)
+
+
 def _spread(cells: Array, depth: Array, edge: Array, spacing: float, depth_of: Callable[[Array], Array]) -> Samples:
     """Particles of the layers at a surface, spread along it.
 
