@@ -213,9 +213,9 @@ class Simulation:
 
     def _follow(self) -> None:
         """Where a frame begins, let what stands still be there for the fluid until the next one does."""
-        if self.fluid and self.step_count % self.substeps == 0:
-            if self.fluid.follow(self.state, self.substeps * self.dt):
-                self._graphs.clear()
+        begins = self.step_count % self.substeps == 0
+        if self.fluid and begins and self.fluid.follow(self.state, self.substeps * self.dt):
+            self._graphs.clear()
 
     def _push_and_move(self) -> None:
         self._push_and_flow()

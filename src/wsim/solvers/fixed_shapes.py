@@ -185,9 +185,7 @@ def _fixed_plane(pose: Array, scale: Array, config: ConfigSPH) -> FixedShape:
     return FixedLattice(pose, lower, upper, config.spacing, config.support, config.dimensions == 2)
 
 
-def _fixed_mesh(
-    pose: Array, vertices: Array, source: Any, convex: bool, spacing: float, shell: float
-) -> FixedShape:
+def _fixed_mesh(pose: Array, vertices: Array, source: Any, convex: bool, spacing: float, shell: float) -> FixedShape:
     triangles = np.asarray(source.indices).reshape(-1, 3)
     extent = vertices.max(axis=0) - vertices.min(axis=0)
     if np.prod(extent / spacing) > MOST_WHOLE:

@@ -63,9 +63,9 @@ def mesh_part(
         spacing: Between particles [m].
         shell: Thickness [m].
     """
-    counts, edge = zip(*(lattice_axis(float(length), spacing) for length in high - low), strict=True)
-    edge = np.array(edge)
-    ticks = [low[k] + (np.arange(counts[k]) + 0.5) * edge[k] for k in range(3)]
+    axes = [lattice_axis(float(length), spacing) for length in high - low]
+    edge = np.array([length for _, length in axes])
+    ticks = [low[k] + (np.arange(count) + 0.5) * edge[k] for k, (count, _) in enumerate(axes)]
     cells = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
     depth = depth_of(cells)
     cells, depth = cells[depth < shell], depth[depth < shell]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import newton
 import numpy as np
@@ -14,13 +13,13 @@ from newton import GeoType, ShapeFlags
 from wsim.geometry.filled import Samples
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.kernels.sph.reach import find_strays
-from wsim.solvers.fixed_shapes import ENDLESS, FixedShape, fixed_shape
+from wsim.solvers.fixed_shapes import FixedShape, fixed_shape
 from wsim.solvers.shapes import OpenBox, sample_container
 from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.tiles import Tiles, keys_of
 
 Array = np.ndarray
-TILE = 16  # spacings that a tile is long
+TILE = 8  # spacings that a tile is long
 CORNERS = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
 
 
@@ -80,7 +79,9 @@ class FixedSolids:
         """Lay the particles of what is around and below fluid that no tank holds, (n, 3) [m], of worlds (n,)."""
         for w, world in enumerate(self._worlds):
             here = fluid[fluid_world == w]
-            here = here[~np.logical_or.reduce([_within(box, here) for box in world.hollows] or [np.zeros(len(here), bool)])]
+            here = here[
+                ~np.logical_or.reduce([_within(box, here) for box in world.hollows] or [np.zeros(len(here), bool)])
+            ]
             if not len(here) or not world.shapes:
                 continue
             low, high = here.min(axis=0), here.max(axis=0)

@@ -61,9 +61,9 @@ def find_strays(
     stray: wp.array(dtype=wp.uint8),
     strays: wp.array(dtype=int),  # (W,): how many
 ):
-    """Mark the particles whose way of the next seconds, under gravity alone, leads out of what is home: tiles, and hollows of tanks.
+    """Mark the particles whose way of the next seconds leads out of what is home: tiles, and hollows of tanks.
 
-    What is far from all that stands still is home, too. A particle that is not finite is nobody's to follow.
+    Gravity alone bends it. What is far from all that stands still is home, too. A particle that is not finite is nobody's to follow.
     """
     i = wp.tid()
     world = particle_world[i]
