@@ -63,7 +63,7 @@ def find_strays(
 ):
     """Mark the particles whose way of the next seconds leads out of what is home: tiles, and hollows of tanks.
 
-    Gravity alone bends it. What is far from all that stands still is home, too. A particle that is not finite is nobody's to follow.
+    Gravity alone bends it. What is far from all that stands still is home, too, and what is not finite is nowhere.
     """
     i = wp.tid()
     world = particle_world[i]
