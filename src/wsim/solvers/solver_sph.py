@@ -134,7 +134,7 @@ class SolverSPH(SolverBase):
         self.body_owner = wp.array(self.bodies.owner, dtype=int)
         self.body_first = wp.array(self.bodies.first, dtype=int)
         self.domain = domain_of(place, containers)
-        self.faces = FixedFaces(model, self.world_count, containers)
+        self.faces = FixedFaces(model, self.world_count, containers, self.config.support)
         self._bring_into_order()
 
     def _bring_into_order(self) -> None:
