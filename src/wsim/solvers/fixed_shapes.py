@@ -45,9 +45,20 @@ class FixedLattice:
         spacing: Between particles [m].
         shell: How deep a fluid sees into it [m].
         flat: One layer at y = 0, for a flow in the x-z plane.
+        bottomless: Whether it goes on below its lower face, without particles.
     """
 
-    def __init__(self, pose: Array, lower: Array, upper: Array, spacing: float, shell: float, flat: bool) -> None:
+    def __init__(
+        self,
+        pose: Array,
+        lower: Array,
+        upper: Array,
+        spacing: float,
+        shell: float,
+        flat: bool,
+        bottomless: bool = False,
+    ) -> None:
+        self._under = np.array([0.0, 0.0, np.inf if bottomless else 0.0])
         self._turn, self._at = np.asarray(pose[3:], dtype=float), np.asarray(pose[:3], dtype=float)
         self._lower, self._upper, self._shell = lower, upper, shell
         self._origin, self._edge = np.zeros(3), np.full(3, spacing)
@@ -89,7 +100,7 @@ class FixedLattice:
     def depth(self, points: Array) -> Array:
         """How deep points (n, 3) are inside of it, (n,) [m]; negative outside."""
         own = rotate(conjugate(self._turn), points - self._at)
-        deep: Array = np.minimum(own - self._lower, self._upper - own).min(axis=1)
+        deep: Array = np.minimum(own - self._lower + self._under, self._upper - own).min(axis=1)
         return deep
 
 
@@ -182,7 +193,8 @@ def _fixed_plane(pose: Array, scale: Array, config: ConfigSPH) -> FixedShape:
     for axis, ends in enumerate(config.periodic[:2]):
         if ends is not None:
             lower[axis], upper[axis] = (end - pose[axis] for end in ends)
-    return FixedLattice(pose, lower, upper, config.spacing, config.support, config.dimensions == 2)
+    flat, bottomless = config.dimensions == 2, bool((scale[:2] == 0.0).all())
+    return FixedLattice(pose, lower, upper, config.spacing, config.support, flat, bottomless)
 
 
 def _fixed_mesh(pose: Array, vertices: Array, source: Any, convex: bool, spacing: float, shell: float) -> FixedShape:
