@@ -13,13 +13,12 @@ from newton.solvers import SolverBase
 from wsim.kernels.sph import boundary as boundary_kernels
 from wsim.kernels.sph import density as density_kernels
 from wsim.kernels.sph import grid as grid_kernels
-from wsim.kernels.sph.status import inspect
 from wsim.solvers.launch import launch_shared
 from wsim.solvers.shapes import OpenBox, sample_bodies
 from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.sph_domain import domain_of
 from wsim.solvers.sph_faces import FixedFaces
-from wsim.solvers.sph_faults import in_words
+from wsim.solvers.sph_faults import in_words, inspected
 from wsim.solvers.sph_particles import SortedParticles
 from wsim.solvers.sph_push import BodyPush
 from wsim.solvers.sph_search import ParticleSearch
@@ -186,7 +185,10 @@ class SolverSPH(SolverBase):
         Returns:
             Whether there was anything to lay: graphs that captured a step are of no use any more.
         """
+        if not self.fixed.anywhere:
+            return False
         with wp.ScopedDevice(self.model.device):
+            self.search.restart()  # so that a world's sums do not go by when it, or another, was followed
             if not self.fixed.ahead(state, seconds):
                 return False
             place = self.fixed.particles()[0]
@@ -218,7 +220,7 @@ class SolverSPH(SolverBase):
         Raises:
             RuntimeError: If a value is not finite, a particle is faster than sound, or a neighbour list overflowed.
         """
-        broken, speeds, outside = self._inspected(state)
+        broken, speeds, outside = inspected(self.search, state)
         fault = next(filter(None, self._faults(broken, speeds)), None)
         if fault:
             raise RuntimeError(fault)
@@ -226,27 +228,8 @@ class SolverSPH(SolverBase):
 
     def faults(self, state: newton.State) -> list[str]:
         """What makes each world's fluid worthless, (W,) texts; empty where it is sound. The others are as they are."""
-        broken, speeds, _ = self._inspected(state)
+        broken, speeds, _ = inspected(self.search, state)
         return self._faults(broken, speeds)
-
-    def _inspected(self, state: newton.State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of each world the first particle that is not finite, the largest speed [m/s], and how many are outside."""
-        with wp.ScopedDevice(self.model.device):
-            broken = wp.full(self.world_count, self.fluid_count, dtype=int)
-            fastest2, outside = wp.zeros(self.world_count, dtype=float), wp.zeros(self.world_count, dtype=int)
-            wp.launch(
-                inspect,
-                dim=self.fluid_count,
-                inputs=[
-                    self.search.grid,
-                    self.search.fluid.world,
-                    state.particle_q,
-                    state.particle_qd,
-                    state.sph.pressure,
-                ],
-                outputs=[broken, fastest2, outside],
-            )
-        return broken.numpy(), np.sqrt(fastest2.numpy()), outside.numpy()
 
     def _faults(self, broken: np.ndarray, speeds: np.ndarray) -> list[str]:
         found = zip(broken.tolist(), speeds.tolist(), self.search.crowd(), strict=True)

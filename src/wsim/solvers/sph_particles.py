@@ -43,7 +43,8 @@ class SortedParticles:
         # Where all worlds are sorted together the sort works on the order itself.
         apart = world_count > 1 and capacity > 0
         self.order = wp.empty(n, dtype=int) if apart or n == 0 else self.value[:n]
-        self.order.assign(np.argsort(world, kind="stable").astype(np.int32))
+        self._own_order = wp.array(np.argsort(world, kind="stable").astype(np.int32), dtype=int)
+        self.restart()
         self.cell_count, self.cell_start = wp.zeros(cells + 1, dtype=int), wp.zeros(cells + 1, dtype=int)
         self.point, self.motion = wp.zeros(n, dtype=wp.vec4), wp.zeros(n, dtype=wp.vec4)
         # Made here: a first step may be captured in a CUDA graph, which would keep what is made in it to itself.
@@ -57,6 +58,10 @@ class SortedParticles:
         self.species.cell_start, self.species.near = self.cell_start, self.near
         self.species.entry, self.species.capacity = wp.empty(n * capacity, dtype=int), capacity
         self.species.entry_count = wp.zeros(n if capacity else 0, dtype=wp.vec3i)
+
+    def restart(self) -> None:
+        """Forget how they were sorted: the next sort starts from their own order, world by world."""
+        wp.copy(self.order, self._own_order)
 
     def sort(self, position: wp.array, first_world: int, last_world: int) -> None:
         """Sort the particles of some worlds by cell; the sort is stable, so that a run repeats bit for bit.

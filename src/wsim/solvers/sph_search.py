@@ -78,6 +78,12 @@ class ParticleSearch:
         self.point_at_build = [wp.zeros(0 if self.cuda else kind.count, dtype=wp.vec4) for kind in self.moving]
         self.move2 = wp.zeros(world_count, dtype=float)
 
+    def restart(self) -> None:
+        """Begin from the particles' own order, as a search that is made anew does."""
+        for kind in self.moving:
+            kind.restart()
+        self.stale = True
+
     def crowd(self) -> np.ndarray:
         """The most neighbours that found no room in a list of each world, (W,): a fluid that collapsed."""
         most: np.ndarray = self.overflow.numpy()

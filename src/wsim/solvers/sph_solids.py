@@ -75,6 +75,11 @@ class FixedSolids:
             world.laid += [self._lay(world, *self._around(box), world.finite) for box in world.hollows]
         self._find = _Finder(model, self._worlds, self._tiles, self._guard)
 
+    @property
+    def anywhere(self) -> bool:
+        """Whether anything but the walls of tanks stands still."""
+        return self._find.wanted
+
     def start(self, fluid: Array, fluid_world: Array) -> None:
         """Lay the particles of what is around and below fluid that no tank holds, (n, 3) [m], of worlds (n,)."""
         for w, world in enumerate(self._worlds):
@@ -191,8 +196,6 @@ class _Finder:
 
     def strays(self, state: newton.State, seconds: float) -> Iterator[tuple[int, Array]]:
         """Worlds, and in each the places (n, 3) [m] on the ways out of what is home."""
-        if not self.wanted:
-            return
         if self.stale:
             self.read_home()
         self._strays.zero_()
