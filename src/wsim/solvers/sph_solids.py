@@ -9,6 +9,7 @@ import newton
 import numpy as np
 import warp as wp
 from newton import GeoType, ShapeFlags
+from scipy.spatial import cKDTree
 
 from wsim.geometry.filled import Samples
 from wsim.geometry.rotations import conjugate, rotate
@@ -20,6 +21,7 @@ from wsim.solvers.tiles import Tiles, keys_of
 
 Array = np.ndarray
 TILE = 8  # spacings that a tile is long
+FEW = 3  # particles that lie together, which have no weight to speak of
 CORNERS = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
 
 
@@ -216,8 +218,15 @@ class _Finder:
         place, velocity = state.particle_q.numpy()[stray], state.particle_qd.numpy()[stray]
         world, gravity = self._world.numpy()[stray], self._model.gravity.numpy()
         for w in np.unique(world).tolist():
-            own = world == w
-            yield w, self._ways(place[own].astype(float), velocity[own].astype(float), gravity[w], seconds)
+            own = np.flatnonzero(world == w)
+            own = own[self._together(place[own])]
+            if len(own):
+                yield w, self._ways(place[own].astype(float), velocity[own].astype(float), gravity[w], seconds)
+
+    def _together(self, place: Array) -> Array:
+        """Which particles are more than a drop of a few, which faces hold as well."""
+        near = cKDTree(place).query_ball_point(place, self._guard, return_length=True)
+        return np.asarray(near > FEW)
 
     def _ways(self, place: Array, velocity: Array, gravity: Array, seconds: float) -> Array:
         """Places on the ways of particles, no farther from each other than a tile is long."""
