@@ -192,6 +192,7 @@ class Simulation:
             needed = compiling.rehearse(self._push_and_move)
         else:
             needed = compiling.rehearse(self._push_and_flow)
+        needed += compiling.rehearse(self._follow)
         needed += compiling.rehearse(lambda: launch_all(self.policies, self))
         if self._draws:
             needed += compiling.rehearse(lambda: CameraRenderer(self.model, self.world))
