@@ -152,6 +152,7 @@ class SolverSPH(SolverBase):
     def _allocate(self) -> None:
         bodies, walls = self.body_particle_count, self.search.walls
         self.pressure = wp.empty(self.fluid_count, dtype=float)
+        self.full = wp.zeros(self.fluid_count, dtype=float)
         self.body_position = wp.zeros(bodies, dtype=wp.vec3)
         self.body_velocity = wp.zeros(bodies, dtype=wp.vec3)
         self.push = BodyPush(self.search, self.body_owner)
@@ -172,6 +173,7 @@ class SolverSPH(SolverBase):
         """Forget the neighbour lists, and the water in gaps; for a state that did not come from the last step."""
         self.search.stale = True
         self.push.forget()
+        self.full.zero_()
 
     def take_wall_impulse(self) -> np.ndarray:
         """Impulse that each world's fluid gave to all that stands still since the last call, (W, 3) [N s]."""
@@ -290,9 +292,10 @@ class SolverSPH(SolverBase):
                 self.model.particle_mass,
                 fluid.world,
                 self.rest_density,
+                self.full,
                 self.config.speed_of_sound,
             ],
-            outputs=[fluid.point, fluid.motion],
+            outputs=[fluid.point, fluid.motion, fluid.full],
         )
         self._gather_solid(self.search.bodies, self.body_position, self.body_velocity, self.body_volume)
         self.push.gather()
@@ -322,7 +325,7 @@ class SolverSPH(SolverBase):
             self.programs.continuity,
             dim=self.fluid_count,
             inputs=[*method, gravity, fluid, walls, bodies, dt],
-            outputs=[self.pressure],
+            outputs=[self.pressure, self.full],
         )
         wp.launch(
             density_kernels.set_pressure,

@@ -67,9 +67,11 @@ def make_compress(sums: PairSums) -> wp.Kernel:
         back to the same fluid with the same weights: continuity is the adjoint of the push, as it is between fluid
         particles (Bonet & Lok 1999, section 3). Where the wall does not push, it gives nothing back.
 
-        Fixed walls alone do, to water that no body is near: water that comes to a dry wall is compressed twice on its
-        way, and stands off. A tank is full at the start, but a body that falls into it would float a fifth of a spacing
-        too high, and drive the water under it into the floor.
+        Fixed walls alone do, to water that has neither a void beside it (`Species.full`) nor a body near it. Water that
+        comes to a dry wall would be compressed twice on its way, and stand off: the front of a dam break came 0.06 s
+        late to the far wall, and hit it with up to five times the pressure. A body that falls into a tank would float
+        a fifth of a spacing too high, and drive the water under it into the floor. A surface that takes nothing back
+        costs the slowest tone of a tank, where walls are near to all its water, 1.3 % of its strength in a period.
 
         `motion` is that of the walls: at rest, and what they give back.
         """

@@ -120,10 +120,12 @@ def gather_fluid(
     mass: wp.array(dtype=float),
     particle_world: wp.array(dtype=int),
     rest_density: wp.array(dtype=float),
+    full: wp.array(dtype=float),
     speed_of_sound: float,
     # Data out:
     point: wp.array(dtype=wp.vec4),
     motion: wp.array(dtype=wp.vec4),
+    sorted_full: wp.array(dtype=float),
 ):
     """Copy positions, volumes, velocities and pressures into sorted order."""
     s = wp.tid()
@@ -134,6 +136,7 @@ def gather_fluid(
     density = rest_density[particle_world[i]] + p / (speed_of_sound * speed_of_sound)
     point[s] = wp.vec4(x[0], x[1], x[2], mass[i] / density)
     motion[s] = wp.vec4(v[0], v[1], v[2], p)
+    sorted_full[s] = full[i]
 
 
 @wp.kernel(enable_backward=False)
