@@ -62,6 +62,29 @@ def test_a_splash_beside_the_tank_is_no_leak():
     assert only(ask(CheckLeak(), still(points))).passed
 
 
+def test_water_in_what_stands_beside_the_tank_is_a_leak():
+    """A block a spacing and more over a particle holds nothing back; one that it lies on does."""
+    points = lattice()
+    points[17] = (1.0, 0.0, 0.1)
+    recording = still(points)
+    for height, sound in ((0.14, False), (0.1, True)):
+        block = Shape(prim="/World/b/s", kind="box", size=(0.3, 0.3, height), position=(1.0, 0.0, height / 2))
+        statics = [*recording.world.statics, Static(prim="/World/b", shapes=[block])]
+        world = recording.world.model_copy(update={"statics": statics})
+        assert only(ask(CheckLeak(), replace(recording, world=world))).passed is sound
+
+
+@pytest.mark.parametrize(("height", "sound"), [(-0.05, True), (-11.0, False)])
+def test_water_that_falls_past_all_that_is_solid_is_a_leak(height, sound):
+    """Off the edge of a shelf, with no ground: it may still land on the shelf's side, but not from under it."""
+    points = lattice()
+    points[17] = (1.0, 0.0, height)
+    recording = still(points)
+    shelf = Shape(prim="/World/s/s", kind="box", size=(1.0, 1.0, 0.1), position=(0.0, 0.0, -0.05))
+    world = recording.world.model_copy(update={"statics": [Static(prim="/World/s", shapes=[shelf])]})
+    assert only(ask(CheckLeak(), replace(recording, world=world))).passed is sound
+
+
 @pytest.mark.parametrize(("degrees", "sound"), [(0.5, True), (2.0, False), (5.0, False), (20.0, False)])
 @pytest.mark.parametrize("axis", [0, 1])
 def test_a_surface_that_is_not_level_at_rest(degrees, sound, axis):

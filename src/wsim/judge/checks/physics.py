@@ -60,13 +60,13 @@ class CheckExplosion(Check):
         tops = [float(evidence.ends(i)[1][0]) for i in range(len(world.bodies))]
         up = evidence.up
         tops += [float(np.array(fluid.center) @ up + np.array(fluid.size) @ np.abs(up) / 2) for fluid in world.fluids]
-        lows = _lows(evidence)
+        lowest = lows(evidence)
         bottoms = [float(evidence.ends(i)[0][0]) for i in range(len(world.bodies))]
         # Nothing to land on, or not for what hangs under it: particles fall for as long as the run lasts.
-        if min(lows, default=math.inf) > min(bottoms, default=math.inf) or not lows:
-            lows = [float((evidence.track(fluid).position @ up).min()) for fluid in world.fluids]
-        lows += [float(evidence.ends(i)[0].min()) for i in range(len(world.bodies))]
-        fall = max(0.0, max(tops, default=0.0) - min(lows, default=0.0))
+        if min(lowest, default=math.inf) > min(bottoms, default=math.inf) or not lowest:
+            lowest = [float((evidence.track(fluid).position @ up).min()) for fluid in world.fluids]
+        lowest += [float(evidence.ends(i)[0].min()) for i in range(len(world.bodies))]
+        fall = max(0.0, max(tops, default=0.0) - min(lowest, default=0.0))
         # What spins may hand on the speed of its rim: a joint there, or the ground, makes it another's.
         speeds = [(math.hypot(*body.velocity), math.hypot(*body.angular_velocity)) for body in world.bodies]
         rims = zip(speeds, evidence.motion.radius, strict=True)
@@ -133,7 +133,7 @@ class CheckExplosion(Check):
         limit = min(max(self.fluid_factor * free, self.least), sound)
         square = np.einsum("tni,tni->tn", track.velocity, track.velocity)
         # What is under everything solid has left the world, and falls on and on: that is a leak, and counted as one.
-        floor = min(_lows(evidence), default=-math.inf) - fluid.spacing
+        floor = min(lows(evidence), default=-math.inf) - fluid.spacing
         fastest = np.sqrt(np.where(track.position @ evidence.up < floor, 0.0, square).max(axis=1))
         frame = int(np.argmax(fastest))
         value, time = float(fastest[frame]), float(track.time[frame])
@@ -175,10 +175,10 @@ class CheckExplosion(Check):
         )
 
 
-def _lows(evidence: Evidence) -> list[float]:
+def lows(evidence: Evidence) -> list[float]:
     """Height of the lowest point of each static shape [m]; none where a plane goes down without end."""
-    lows = [_lowest(shape, evidence.up) for static in evidence.world.statics for shape in static.shapes]
-    return lows if all(math.isfinite(low) for low in lows) else []
+    found = [_lowest(shape, evidence.up) for static in evidence.world.statics for shape in static.shapes]
+    return found if all(math.isfinite(low) for low in found) else []
 
 
 def _lowest(shape: Shape, up: Floats) -> float:

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import conjugate, rotate
-from wsim.geometry.shapes import kind_of
+from wsim.geometry.rotations import rotate
+from wsim.geometry.shapes import into, kind_of
 from wsim.judge.checks.check import Check, Checks
+from wsim.judge.checks.physics import lows
 from wsim.judge.evidence.containment import local
 from wsim.scene.contact import within
 
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class CheckLeak(Check):
-    """Not one particle gets under the floor of its tank, or into the ground."""
+    """Not one particle gets under the floor of its tank, into the ground or what stands there, or falls for ever."""
 
     spacings: float = 1.0  # that particles may press into what is solid
 
@@ -39,27 +40,25 @@ class CheckLeak(Check):
             value, at = int(lost.max(initial=0)), int(np.argmax(lost > 0))
             found.append(
                 self.measured(
-                    f"{value} of {track.position.shape[1]} particles of {fluid.prim} are under a floor, "
-                    f"from {float(track.time[at]):.3f} s",
+                    f"{value} of {track.position.shape[1]} particles of {fluid.prim} are under a floor, or in what is "
+                    f"solid, from {float(track.time[at]):.3f} s",
                     value, 0.0, "particles", prim=fluid.prim, time=float(track.time[at]), expected=0.0,
-                    fine=f"No particle of {fluid.prim} gets under a floor",
+                    fine=f"No particle of {fluid.prim} gets under a floor or into what is solid",
                     limit_from=f"none, farther than {self.spacings:g} spacing: what is solid lets nothing through",
                 )
             )  # fmt: skip
         return found
 
     def _through(self, evidence: Evidence, fluid: Fluid, points: NDArray[np.float32]) -> int:
-        """Particles under the hollow of a tank, or in the ground."""
-        deep, gone = self.spacings * fluid.spacing, np.zeros(len(points), dtype=bool)
+        """Particles under the hollow of a tank, in what stands still, or under all of it, where nothing holds them."""
+        deep, own = self.spacings * fluid.spacing, points.astype(np.float64)
+        gone = own @ evidence.up < min(lows(evidence), default=-math.inf) - deep
         container = evidence.container_of(fluid)
         if container is not None:
-            own, half = local(container, points.astype(np.float64)), np.array(container.inner_size) / 2
-            gone |= (np.abs(own[:, :2]) < half[:2]).all(axis=1) & (own[:, 2] < -half[2] - deep)
-        for static in evidence.world.statics:
-            for shape in static.shapes:
-                if shape.kind == "plane" and shape.collides:
-                    turn = conjugate(np.array(shape.rotation))
-                    gone |= kind_of(shape).depth(rotate(turn, points - np.array(shape.position))) > deep
+            inside, half = local(container, own), np.array(container.inner_size) / 2
+            gone |= (np.abs(inside[:, :2]) < half[:2]).all(axis=1) & (inside[:, 2] < -half[2] - deep)
+        for shape in (shape for static in evidence.world.statics for shape in static.shapes if shape.collides):
+            gone |= kind_of(shape).depth(into(shape, own)) > deep
         return int(gone.sum())
 
 
