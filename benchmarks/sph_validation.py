@@ -105,6 +105,12 @@ def errors(run: Run) -> str:
     return ", ".join(f"{key} {abs(error):.3g} {run.case.unit[key]}" for key, error in found)
 
 
+def print_values(run: Run) -> None:
+    """A line for each number that has a reference: measured / reference / tolerance."""
+    for key, value in (run.measured.values if run.measured else {}).items():
+        print(f"    {key}: {value}", flush=True)
+
+
 def table(runs: list[Run]) -> list[tuple[str, ...]]:
     """A row for each error of each run, and one for each run that failed."""
     rows = []
@@ -117,7 +123,9 @@ def table(runs: list[Run]) -> list[tuple[str, ...]]:
             unit, reach = run.case.unit[key], run.case.reach[key]
             order = f"{run.order[key]:+.1f}" if key in run.order else ""
             start = (run.case.name, spacing, f"{run.measured.particles}", key)
-            numbers = (f"{abs(error):.3g} {unit}", f"{reach:g} {unit}", order)
+            value = run.measured.values.get(key)
+            beside = f" ({value.measured:.4g} for {value.reference:.4g} {value.unit})" if value else ""
+            numbers = (f"{abs(error):.3g} {unit}{beside}", f"{reach:g} {unit}", order)
             rows.append((*start, *numbers, verdict(error, reach, unit), f"{run.seconds:.1f}"))
     return rows
 
@@ -128,6 +136,11 @@ def print_table(rows: list[tuple[str, ...]]) -> None:
     widths = [max(len(row[k]) for row in [HEADER, *fitting]) for k in range(len(HEADER))]
     for row in [HEADER, *rows]:
         print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
+
+
+def bold_misses(row: tuple[str, ...]) -> tuple[str, ...]:
+    """A row for Markdown, where what misses its reach stands out."""
+    return tuple(f"**{cell}**" if cell.startswith("MISSED") else cell for cell in row)
 
 
 def describe(device: str) -> dict[str, str]:
@@ -238,6 +251,7 @@ def main(arguments: list[str] | None = None) -> int:
             print(f"{case.name} at {1e3 * spacing:.4g} mm on {device} … ", end="", flush=True)
             of_case.append(run_case(case, spacing, device))
             print(of_case[-1].failure or f"{of_case[-1].seconds:.1f} s: {errors(of_case[-1])}", flush=True)
+            print_values(of_case[-1])
         find_orders(of_case)
         runs += of_case
     rows = table(runs)
@@ -246,7 +260,7 @@ def main(arguments: list[str] | None = None) -> int:
     if args.json:
         write_text(args.json, json.dumps(plain(as_json(runs, device, fine)), indent=1) + "\n")
     if args.markdown:
-        lines = [" | ".join(row) for row in [HEADER, ("---",) * len(HEADER), *rows]]
+        lines = [" | ".join(row) for row in [HEADER, ("---",) * len(HEADER), *map(bold_misses, rows)]]
         write_text(args.markdown, "".join(f"| {line} |\n" for line in lines))
     if args.plots:
         write_plots(runs, args.plots)

@@ -46,6 +46,13 @@ def lattice(low: tuple[float, ...], high: tuple[float, ...], spacing: float, pla
     return box_lattice(high_ - low_, spacing).position + 0.5 * (low_ + high_)
 
 
+def steps_in(solver: SolverSPH, seconds: float, samples: int, dt: float | None = None) -> tuple[int, float]:
+    """How many steps `simulate` takes between two samples, and how long they are [s]."""
+    dt = min(solver.config.max_time_step, seconds / samples, dt or math.inf)
+    every = math.ceil(seconds / samples / dt)
+    return every, seconds / samples / every
+
+
 def simulate(
     solver: SolverSPH,
     state: newton.State,
@@ -54,19 +61,26 @@ def simulate(
     observe: Callable[[float], None] | None = None,
     rigid: object | None = None,
     dt: float | None = None,
+    after_step: Callable[[], None] | None = None,
+    before_step: Callable[[], None] | None = None,
 ) -> int:
-    """Step for `seconds`, calling `observe(t)` at `samples` even times; on CUDA through a graph. Returns the steps."""
-    dt = min(solver.config.max_time_step, seconds / samples, dt or math.inf)
-    every = math.ceil(seconds / samples / dt)
-    dt = seconds / samples / every
+    """Step for `seconds`, calling `observe(t)` at `samples` even times; on CUDA through a graph. Returns the steps.
+
+    `before_step` and `after_step` are called in every step and captured with it: they may launch kernels, not read.
+    """
+    every, dt = steps_in(solver, seconds, samples, dt)
     control = solver.model.control()
 
     def interval() -> None:
         for _ in range(every):
             state.clear_forces()
+            if before_step is not None:
+                before_step()
             solver.step(state, state, control, None, dt)
             if rigid is not None:
                 rigid.step(state, state, control, None, dt)
+            if after_step is not None:
+                after_step()
 
     graph = None
     for sample in range(samples):

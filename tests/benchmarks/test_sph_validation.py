@@ -1,12 +1,13 @@
 """The harness of the fluid's validation: what it runs, and that it hides nothing."""
 
+import dataclasses
 import json
 import math
 
 import pytest
 
 from benchmarks import sph_validation
-from benchmarks.sph_cases.case import Case, Measured
+from benchmarks.sph_cases.case import Case, Measured, Value
 
 
 def make_case(name: str, errors: dict[float, float | None]) -> Case:
@@ -61,7 +62,18 @@ def test_a_miss_is_said_and_does_not_fail(with_cases, capsys, tmp_path):
     assert lost["value"] == "nan"
     assert found["made_with"]["device"] == "cpu"
     assert paths[1].read_text().count("\n") == 5
+    assert "| **MISSED by 3 %** |" in paths[1].read_text()
     assert (paths[2] / "falls.png").stat().st_size < 100_000
+
+
+def test_a_value_stands_beside_its_reference(with_cases, capsys):
+    case = make_case("knows", {0.1: 0.5})
+    known = Measured({"e": 0.5}, values={"e": Value(10.05, 10.0, 9.9, 10.1, "N")})
+    with_cases(dataclasses.replace(case, run=lambda device, spacing: known))
+    assert sph_validation.main(["--device", "cpu"]) == 0
+    printed = capsys.readouterr().out
+    assert "e: 10.05 / 10 / 9.9 to 10.1 N" in printed
+    assert "0.5 % (10.05 for 10 N)" in printed
 
 
 def test_a_case_that_raises_is_a_row_and_the_others_still_run(with_cases, capsys):
