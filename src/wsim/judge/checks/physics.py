@@ -16,6 +16,7 @@ from wsim.judge.checks.deepest import Deepest, deepest_of, held_through
 from wsim.judge.evidence.carriers import surface_speed
 from wsim.judge.evidence.contact import given_way, overlaps
 from wsim.judge.evidence.recorded import MissingError
+from wsim.judge.evidence.squeezed import squeezed_speed
 from wsim.judge.repair.lasting import leak
 from wsim.judge.repair.place import overlapping_start
 from wsim.judge.repair.rule import faster_sound, finer, shorter_step, sound_speed
@@ -130,7 +131,7 @@ class CheckExplosion(Check):
     def _fluid(self, evidence: Evidence, fluid: Fluid, free: float) -> Finding:
         track = evidence.track(fluid)
         sound = fluid.speed_of_sound or float(evidence.recording.metadata.get("speed_of_sound") or math.inf)
-        limit = min(max(self.fluid_factor * free, self.least), sound)
+        limit = min(max(self.fluid_factor * free, squeezed_speed(evidence, fluid, free), self.least), sound)
         square = np.einsum("tni,tni->tn", track.velocity, track.velocity)
         # What is under everything solid has left the world, and falls on and on: that is a leak, and counted as one.
         floor = min(lows(evidence), default=-math.inf) - fluid.spacing
@@ -140,8 +141,8 @@ class CheckExplosion(Check):
         return self.measured(
             f"{fluid.prim}: its fastest particle has {value:.3g} m/s, at {time:.3f} s",
             value, limit, "m/s", prim=fluid.prim, time=self._first(track.time, fastest > limit, time),
-            limit_from=f"{self.fluid_factor:g} sqrt(v0^2 + 2 g dz), or the speed of sound, beyond which a weakly "
-            "compressible fluid is none",
+            limit_from=f"{self.fluid_factor:g} sqrt(v0^2 + 2 g dz), or what a body that lands drives out over its rim, "
+            "v A / P h, h a quarter of a spacing; at most the speed of sound, beyond which it is none",
         )  # fmt: skip
 
     @staticmethod
