@@ -302,7 +302,7 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
         {
             "name": "new name", "spacing": "number > 0", "fills": "tank", "level": "number > 0", "size": "sizes",
             "position": "three numbers", "container": "tank", "density": "number > 0", "viscosity": "number >= 0",
-            "speed_of_sound": "number >= 0", "color": "colour",
+            "speed_of_sound": "number >= 0", "color": "colour", "attenuation_length": "number >= 0",
         },
     ),
     "material": (

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from pxr import Gf, Sdf, UsdGeom
 
+from wsim.limits import MAX_SIZE
 from wsim.scene import schema
 from wsim.scene.authoring import Handle, note_line, set_extent, set_pose
 from wsim.scene.materials import Look, Material, bind
@@ -14,7 +16,7 @@ from wsim.scene.tanks import Tank, Tanks
 from wsim.scene.validate import Call, Vec3, shown, suggestion
 
 _WATER: Vec3 = (0.15, 0.4, 0.6)
-_OPACITY = 0.6
+_OPACITY = 0.6  # that USD's own tools draw it with, where nothing says how clear it is
 _TOUCH = 1e-6  # [m]: rounding, not overlap
 
 
@@ -53,6 +55,7 @@ class Fluids(Tanks):
         viscosity: float = 0.001,
         speed_of_sound: float = 0.0,
         color: Sequence[float] = _WATER,
+        attenuation_length: float | None = None,
     ) -> Fluid:
         """Fill a tank up to a level, or stand a free box of fluid somewhere.
 
@@ -68,6 +71,9 @@ class Fluids(Tanks):
             viscosity: Dynamic viscosity [Pa s]; water 0.001, honey 10.
             speed_of_sound: Numerical, of weakly compressible SPH [m/s]; 0 lets the solver choose.
             color: Linear RGB.
+            attenuation_length: How clear it is: the way through it after which 1/e of the light is left [m], and has
+                taken on its colour. 0 hides all that is in it (paint, lava); milk 0.001, cola 0.02, oil 0.1; not
+                given, it is as clear as water, however large.
 
         Raises:
             SceneError: If the fluid does not fit its tank, is thinner than one particle, overlaps another fluid, or
@@ -104,11 +110,21 @@ class Fluids(Tanks):
                 call.within("speed_of_sound", speed_of_sound, 0.0, 1e4, "m/s"),
             ),
         }
-        self._author_fluid(fluid, values, tank, call.color("color", color))
+        opacity = _OPACITY
+        if attenuation_length is not None:
+            length = call.within("attenuation_length", attenuation_length, 0.0, MAX_SIZE, "m")
+            values["attenuationLength"] = (Sdf.ValueTypeNames.Double, length)
+            opacity = 1.0 - math.exp(-max(edges) / length) if length > 0.0 else 1.0
+        self._author_fluid(fluid, values, tank, call.color("color", color), opacity)
         return fluid
 
     def _author_fluid(
-        self, fluid: Fluid, values: dict[str, tuple[Sdf.ValueTypeName, object]], tank: Tank | None, color: Vec3
+        self,
+        fluid: Fluid,
+        values: dict[str, tuple[Sdf.ValueTypeName, object]],
+        tank: Tank | None,
+        color: Vec3,
+        opacity: float,
     ) -> None:
         prim = UsdGeom.Xform.Define(self._stage, fluid.path).GetPrim()
         note_line(prim)
@@ -122,12 +138,12 @@ class Fluids(Tanks):
         set_pose(cube.GetPrim(), (0.0, 0.0, 0.0), scale=fluid.size)
         set_extent(cube.GetPrim())
         note_line(cube.GetPrim())
-        bind(cube.GetPrim(), self._water(fluid.name, color))
+        bind(cube.GetPrim(), self._liquid(fluid.name, color, opacity))
         self._fluids.append(fluid)
 
-    def _water(self, name: str, color: Vec3) -> Material:
+    def _liquid(self, name: str, color: Vec3, opacity: float) -> Material:
         call = Call("fluid", name)
-        return self._surface(call, None, None, None, color, opacity=_OPACITY, look=Look(roughness=0.02, ior=1.33))
+        return self._surface(call, None, None, None, color, opacity=opacity, look=Look(roughness=0.02, ior=1.33))
 
     def _tank(self, call: Call, field: str, what: Handle | str) -> Tank:
         path = str(self._find(call, field, what).GetPath())

@@ -126,6 +126,9 @@ class Fluid(_Model):
     speed_of_sound: float = 0.0  # [m/s]; 0 lets the solver choose
     container: str | None = None  # prim of the container it fills
     color: Vec3 = (0.15, 0.4, 0.6)
+    attenuation_length: float | None = (
+        None  # [m], after which 1/e of the light is left; None: clear, as the box is large
+    )
     line: str | None = None
 
 
