@@ -344,7 +344,11 @@ def _fluid(prim: Usd.Prim) -> Iterator[str]:
         *_bounded(prim.GetAttribute("wsim:size"), MAX_SIZE, "m"),
         *_bounded(prim.GetAttribute("wsim:spacing"), MAX_SIZE, "m"),
         *_bounded(prim.GetAttribute("wsim:speedOfSound"), 1e4, "m/s", zero=True),
+<<<<<<< HEAD
         *_bounded(prim.GetAttribute("wsim:attenuationLength"), MAX_SIZE, "m", zero=True),
+=======
+        *_within(prim.GetAttribute("wsim:velocity"), MAX_SPEED, "m/s"),
+>>>>>>> ground
     ]
     yield from problems
     size, spacing = prim.GetAttribute("wsim:size").Get(), prim.GetAttribute("wsim:spacing").Get()

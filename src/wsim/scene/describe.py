@@ -220,6 +220,7 @@ def _fluid(prim: Usd.Prim) -> Fluid:
         spacing=value_of(prim, "spacing", 0.0),
         size=to_vec3(value_of(prim, "size", Gf.Vec3f(0.0))),
         center=to_vec3(rigid_frame(prim).ExtractTranslation()),
+        velocity=to_vec3(value_of(prim, "velocity", Gf.Vec3f(0.0))),
         speed_of_sound=value_of(prim, "speedOfSound", 0.0),
         container=str(targets[0]) if targets else None,
         attenuation_length=value_of(prim, "attenuationLength", None),

@@ -51,6 +51,7 @@ class Fluids(Tanks):
         size: Sequence[float] | None = None,
         position: Sequence[float] | None = None,
         container: Handle | str | None = None,
+        velocity: Sequence[float] = (0.0, 0.0, 0.0),
         density: float = 1000.0,
         viscosity: float = 0.001,
         speed_of_sound: float = 0.0,
@@ -67,6 +68,7 @@ class Fluids(Tanks):
             size: Instead of `fills`: edges (x, y, z) of a box of fluid [m], with `position`.
             position: Centre of that box [m].
             container: The tank that box stands in; found by itself where the box lies inside one.
+            velocity: That all of it starts with, in the world [m/s].
             density: Rest density [kg/m^3].
             viscosity: Dynamic viscosity [Pa s]; water 0.001, honey 10.
             speed_of_sound: Numerical, of weakly compressible SPH [m/s]; 0 lets the solver choose.
@@ -105,6 +107,7 @@ class Fluids(Tanks):
             "viscosity": (Sdf.ValueTypeNames.Double, call.within("viscosity", viscosity, 0.0, 1e6, "Pa s")),
             "spacing": (Sdf.ValueTypeNames.Double, step),
             "size": (Sdf.ValueTypeNames.Float3, Gf.Vec3f(*edges)),
+            "velocity": (Sdf.ValueTypeNames.Float3, Gf.Vec3f(*call.velocity(velocity))),
             "speedOfSound": (
                 Sdf.ValueTypeNames.Double,
                 call.within("speed_of_sound", speed_of_sound, 0.0, 1e4, "m/s"),

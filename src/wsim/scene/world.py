@@ -123,6 +123,7 @@ class Fluid(_Model):
     spacing: float  # particle spacing [m]
     size: Vec3  # [m]
     center: Vec3  # [m], world
+    velocity: Vec3 = (0.0, 0.0, 0.0)  # [m/s], world
     speed_of_sound: float = 0.0  # [m/s]; 0 lets the solver choose
     container: str | None = None  # prim of the container it fills
     color: Vec3 = (0.15, 0.4, 0.6)

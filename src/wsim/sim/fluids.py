@@ -1,4 +1,4 @@
-"""Boxes of fluid → particles at rest on a lattice."""
+"""Boxes of fluid → particles on a lattice."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from newton import GeoType, ParticleFlags, ShapeFlags
 from wsim.errors import UserError
 from wsim.geometry.filled import box_lattice
 from wsim.geometry.rotations import conjugate, rotate
-from wsim.geometry.shapes import into, kind_of
+from wsim.geometry.shapes import into, kind_of, reach
 from wsim.scene.world import Fluid, Shape, World
 from wsim.solvers.inside import depth_in, solid_of
 from wsim.solvers.shapes import OpenBox
@@ -27,10 +27,11 @@ Depth = Callable[[Array], Array]
 
 @dataclass(frozen=True)
 class Seeded:
-    """The particles of one fluid: positions [m] (n, 3), masses [kg] (n,), pressures [Pa] (n,)."""
+    """The particles of one fluid: positions [m] and velocities [m/s] (n, 3), masses [kg] and pressures [Pa] (n,)."""
 
     prim: str
     position: Array
+    velocity: Array
     mass: Array
     pressure: Array
 
@@ -95,18 +96,28 @@ def largest_step(world: World, config: ConfigSPH) -> float:
 
 
 def expected_speed(world: World) -> float:
-    """Largest speed that the fluid should see [m/s]: gravity waves or a collapse, and bodies that fall in."""
+    """Largest speed that the fluid should see [m/s]: its start, waves or a collapse, and bodies that fall in."""
     g = float(np.linalg.norm(world.gravity))
     speeds = [0.1]
     for fluid in world.fluids:
         # A fluid that fills its container from wall to wall can only slosh, at the shallow-water wave's speed;
-        # a free column falls by its height.
-        speeds.append(math.sqrt((1.0 if _fills(fluid, world) else 2.0) * g * fluid.size[2]))
+        # a column in one falls by its height, a free one to the lowest that there is.
+        falls = 2.0 * (fluid.size[2] if fluid.container else max(_over_all(fluid, world), fluid.size[2]))
+        wave = math.sqrt((fluid.size[2] if _fills(fluid, world) else falls) * g)
+        speeds.append(math.hypot(*fluid.velocity, wave))
     for body in world.bodies:
         bottom = body.position[2] - 0.5 * min((kind_of(shape).thinnest for shape in body.shapes), default=0.0)
         drop = max((bottom - (f.center[2] + 0.5 * f.size[2]) for f in world.fluids), default=0.0)
         speeds.append(math.sqrt(2.0 * g * max(drop, 0.0)))
     return max(speeds)
+
+
+def _over_all(fluid: Fluid, world: World) -> float:
+    """How high the top of a fluid is above the lowest point of what stands still, and above planes [m]."""
+    still = [shape for static in world.statics for shape in static.shapes if shape.collides]
+    planes = [shape.position[2] for shape in still if shape.kind == "plane"]
+    lows = planes or [float(reach(shape, np.array([[0.0, 0.0, 0.0, 1.0]]))[0][0]) for shape in still]
+    return fluid.center[2] + 0.5 * fluid.size[2] - min(lows, default=math.inf)
 
 
 def _fills(fluid: Fluid, world: World) -> bool:
@@ -138,7 +149,7 @@ def mesh_depths(builder: Any, world: World) -> dict[str, list[Depth]]:
 
 
 def seed(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Seeded:
-    """Particles of a box of fluid at rest under its own weight, without those where a solid already is.
+    """Particles of a box of fluid as it rests under its own weight, without those where a solid already is.
 
     The mass of each is the fluid's density times its cell, so that the fluid's mass is right whatever the spacing.
     The pressure is hydrostatic.
@@ -166,6 +177,7 @@ def seed(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Seeded:
     return Seeded(
         prim=fluid.prim,
         position=position,
+        velocity=np.tile(fluid.velocity, (len(position), 1)),
         mass=fluid.density * cells.volume[free],
         pressure=fluid.density * abs(world.gravity[2]) * np.maximum(depth, 0.0),
     )
@@ -185,7 +197,7 @@ def add_seeded(builder: Any, worlds: Sequence[World]) -> tuple[list[dict[str, sl
         parts += seeded
     counts = [sum(part.stop - part.start for part in own.values()) for own in ranges]
     builder.particle_q = np.concatenate([part.position for part in parts]).astype(np.float32)
-    builder.particle_qd = np.zeros_like(builder.particle_q)
+    builder.particle_qd = np.concatenate([part.velocity for part in parts]).astype(np.float32)
     builder.particle_mass = np.concatenate([part.mass for part in parts]).astype(np.float32)
     radii = [0.5 * fluid.spacing for world in worlds for fluid in world.fluids]
     builder.particle_radius = np.repeat(np.array(radii, dtype=np.float32), [len(part.mass) for part in parts])

@@ -337,7 +337,7 @@ def _add_fluids(builder: Any, world: World, config: Any) -> dict[str, slice]:
         first, count = builder.particle_count, len(seeded.position)
         builder.add_particles(
             pos=seeded.position.tolist(),
-            vel=[(0.0, 0.0, 0.0)] * count,
+            vel=seeded.velocity.tolist(),
             mass=seeded.mass.tolist(),
             radius=[0.5 * fluid.spacing] * count,
             custom_attributes={"sph:pressure": seeded.pressure.tolist()},

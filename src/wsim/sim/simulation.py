@@ -203,12 +203,19 @@ class Simulation:
 
     def step(self) -> None:
         """Advance by one time step: the fluid pushes the bodies, then the bodies move."""
+        self._follow()
         self._until_control()
         if self._replays:
             wp.capture_launch(self._captured(1))
         else:
             self._push_and_move()
         self._count(1)
+
+    def _follow(self) -> None:
+        """Where a frame begins, let what stands still be there for the fluid until the next one does."""
+        begins = self.step_count % self.substeps == 0
+        if self.fluid and begins and self.fluid.follow(self.state, self.substeps * self.dt):
+            self._graphs.clear()
 
     def _push_and_move(self) -> None:
         self._push_and_flow()
@@ -234,6 +241,7 @@ class Simulation:
                 self.step()
             return
         left = self.substeps
+        self._follow()
         while left:
             steps = min(left, self._until_control())
             if alone:
@@ -314,8 +322,6 @@ class Simulation:
         with ExitStack() as stack:
             stack.enter_context(phases.phase("record"))
             writer = stack.enter_context(RecordingWriter(recording, self.world, {**(metadata or {}), **self.facts()}))
-            if self.fluid:
-                writer.solids(solids_of(self.built, self.fluid, 0))
             pictures = None
             if video:
                 with phases.phase("prepare the camera"):
@@ -348,6 +354,8 @@ class Simulation:
                     break
             if self.sensors and not problems:
                 self.sensors.ask(self.step_count, self)  # whose turn is at the end
+            if self.fluid:
+                writer.solids(solids_of(self.built, self.fluid, 0))
             motion = moved.motion()
             pictures.draw(motion) if pictures else write_views(writer, self.world, motion, named)
             if problems:

@@ -15,7 +15,7 @@ from wsim.kernels.sph import density as density_kernels
 from wsim.kernels.sph import grid as grid_kernels
 from wsim.kernels.sph.status import inspect
 from wsim.solvers.launch import launch_shared
-from wsim.solvers.shapes import OpenBox, sample_boundary
+from wsim.solvers.shapes import OpenBox, sample_bodies
 from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.sph_domain import domain_of
 from wsim.solvers.sph_faces import FixedFaces
@@ -23,6 +23,7 @@ from wsim.solvers.sph_faults import in_words
 from wsim.solvers.sph_particles import SortedParticles
 from wsim.solvers.sph_push import BodyPush
 from wsim.solvers.sph_search import ParticleSearch
+from wsim.solvers.sph_solids import FixedSolids
 
 LEAST_LANES = 32
 
@@ -121,53 +122,79 @@ class SolverSPH(SolverBase):
                 self._read_worlds()
 
     def _sample_solids(self, containers: tuple[OpenBox, ...]) -> None:
-        """Fill the solids with particles, and bring walls and worlds into order."""
+        """Fill the solids with particles: bodies, and what stands still where the fluid is."""
         model = self.model
-        place, world = model.particle_q.numpy(), np.maximum(model.particle_world.numpy(), 0)
-        solids = sample_boundary(model, self.config, containers, place, world)
-        fixed = int(solids.body_first[0])
-        self.wall_count, self.body_particle_count = fixed, len(solids.local) - fixed
-        self.boundary_count = len(solids.local)
-        self.count = self.fluid_count + self.boundary_count
-        self.wall_position = wp.array(solids.local[:fixed], dtype=wp.vec3)
-        self.wall_volume = wp.array(solids.volume[:fixed], dtype=float)
-        self.body_local = wp.array(solids.local[fixed:], dtype=wp.vec3)
-        self.body_volume = wp.array(solids.volume[fixed:], dtype=float)
-        self.body_owner = wp.array(solids.owner[fixed:], dtype=int)
-        self.body_first = wp.array(solids.body_first - fixed, dtype=int)
+        place, self._fluid_world = model.particle_q.numpy(), np.maximum(model.particle_world.numpy(), 0)
+        self.fixed = FixedSolids(model, self.config, containers)
+        self.fixed.start(place, self._fluid_world)
+        self.bodies = sample_bodies(model, self.config)
+        self.body_particle_count = len(self.bodies.local)
+        self.body_local = wp.array(self.bodies.local, dtype=wp.vec3)
+        self.body_volume = wp.array(self.bodies.volume, dtype=float)
+        self.body_owner = wp.array(self.bodies.owner, dtype=int)
+        self.body_first = wp.array(self.bodies.first, dtype=int)
         self.domain = domain_of(place, containers)
+        self.faces = FixedFaces(model, self.world_count, containers, self.config.support)
+        self._bring_into_order()
+
+    def _bring_into_order(self) -> None:
+        """Take the walls' particles, and search among all."""
+        position, volume, world = self.fixed.particles()
+        self.wall_count = len(position)
+        self.boundary_count = self.wall_count + self.body_particle_count
+        self.count = self.fluid_count + self.boundary_count
+        self.wall_position, self.wall_volume = wp.array(position, dtype=wp.vec3), wp.array(volume, dtype=float)
         self.search = ParticleSearch(
             self.config,
             self.domain,
+            self._fluid_world,
             world,
-            solids.world[:fixed],
-            solids.world[fixed:],
+            self.bodies.world,
             self.wall_position,
             self.world_count,
-            solids.crowd((1.0 + self.config.skin) * self.config.support),
+            self.bodies.crowd((1.0 + self.config.skin) * self.config.support),
         )
         self.programs = self.search.programs
-        self.faces = FixedFaces(model, self.world_count, containers)
+        still = wp.zeros(self.wall_count, dtype=wp.vec3)
+        self._gather_solid(self.search.walls, self.wall_position, still, self.wall_volume)
+        self._on_walls = wp.zeros(self.fluid_count if self.wall_count or self.faces.count else 0, dtype=wp.vec3)
 
     def _allocate(self) -> None:
-        bodies, walls = self.body_particle_count, self.search.walls
+        bodies = self.body_particle_count
         self.pressure = wp.empty(self.fluid_count, dtype=float)
         self.full = wp.zeros(self.fluid_count, dtype=float)
         self.body_position = wp.zeros(bodies, dtype=wp.vec3)
         self.body_velocity = wp.zeros(bodies, dtype=wp.vec3)
         self.push = BodyPush(self.search, self.body_owner)
-        self._gather_solid(walls, self.wall_position, wp.zeros(self.wall_count, dtype=wp.vec3), self.wall_volume)
         # As many lanes as each has particles of the largest body to add up, and add_body_wrench lanes.
         largest = int(np.diff(self.body_first.numpy()).max(initial=0))
         self.lanes = max(LEAST_LANES, math.isqrt(largest))
         self.lane_wrench = wp.zeros((self.model.body_count, self.lanes), dtype=wp.spatial_vector)
         self.body_wrench = wp.zeros(self.model.body_count, dtype=wp.spatial_vector)
-        self._on_walls = wp.zeros(self.fluid_count if self.wall_count else 0, dtype=wp.vec3)
         first = self.search.fluid.world_first  # Newton's worlds follow one another
         own = [max(LEAST_LANES, math.isqrt(count)) for count in np.diff(first).tolist()]
         self._world_first, self._lanes_of_walls = wp.array(first, dtype=int), wp.array(own, dtype=int)
         self._wall_lanes = wp.zeros((self.world_count, max(own)), dtype=wp.vec3d)
         self._wall_impulse = wp.zeros(self.world_count, dtype=wp.vec3d)
+
+    def follow(self, state: newton.State, seconds: float) -> bool:
+        """Lay particles of what stands still where the fluid may get within a time; call it as often, between steps.
+
+        Args:
+            state: The present state.
+            seconds: Until the next call [s].
+
+        Returns:
+            Whether there was anything to lay: graphs that captured a step are of no use any more.
+        """
+        with wp.ScopedDevice(self.model.device):
+            if not self.fixed.ahead(state, seconds):
+                return False
+            place = self.fixed.particles()[0]
+            self.domain = np.minimum(self.domain[0], place.min(axis=0)), np.maximum(self.domain[1], place.max(axis=0))
+            self._bring_into_order()
+            self.push.look_among(self.search)
+        return True
 
     def reset_search(self) -> None:
         """Forget the neighbour lists, and the water in gaps; for a state that did not come from the last step."""
@@ -353,7 +380,7 @@ class SolverSPH(SolverBase):
             inputs=[*method, self.model.gravity, fluid, walls, bodies, self.model.particle_mass, dt],
             outputs=[state_out.particle_q, state_out.particle_qd, self._on_walls],
         )
-        if self.wall_count:
+        if len(self._on_walls):
             if self.faces.count and self.config.dimensions == 3:
                 at = state_out.particle_q, state_out.particle_qd
                 self.faces.keep_out(self.search.fluid.world, dt, *at, self._on_walls)

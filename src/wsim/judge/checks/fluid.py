@@ -69,7 +69,7 @@ class CheckFluidMass(Check):
 
 @dataclass
 class CheckPlanFluid(Check):
-    """Each fluid has the plan's density and viscosity, and stands where the plan has its free surface."""
+    """Each fluid has the plan's density, viscosity and velocity, and stands where the plan has its free surface."""
 
     share: float = 0.05  # of the density
     spacings: float = 0.5  # of the level: half of what the particles resolve
@@ -84,7 +84,7 @@ class CheckPlanFluid(Check):
         found: list[Finding] = []
         for item, fluid in known:
             found += [*self._density(fluid, item), *self._viscosity(fluid, item), *self._level(evidence, fluid, item)]
-            found += self._block(fluid, item)
+            found += [*self._block(fluid, item), *self._velocity(fluid, item)]
         return found or ([self.passed("Fluids are of the plan's density, viscosity and level")] if known else [])
 
     def _viscosity(self, fluid: Fluid, item: PlanObject) -> list[Finding]:
@@ -122,6 +122,22 @@ class CheckPlanFluid(Check):
                 f"{listed(item.size)} m at {listed(item.pose.position)} m",
                 off, limit, "m", expected=0.0, prim=fluid.prim, time=0.0,
                 limit_from=f"a particle spacing, or {self.share:.0%} of its longest edge", target=target,
+            )
+        ]  # fmt: skip
+
+    def _velocity(self, fluid: Fluid, item: PlanObject) -> list[Finding]:
+        off, limit = math.dist(fluid.velocity, item.velocity), self.share * math.hypot(*item.velocity)
+        if off <= limit:
+            return []
+        target = RepairTarget(
+            kind="fluid", prim=fluid.prim, parameter="velocity", direction="change", unit="m/s",
+            suggested=math.hypot(*item.velocity), vector=item.velocity,
+        )  # fmt: skip
+        return [
+            self.measured(
+                f"{fluid.prim} starts at {listed(fluid.velocity)} m/s; the plan has {listed(item.velocity)} m/s",
+                off, limit, "m/s", expected=0.0, prim=fluid.prim, time=0.0,
+                limit_from=f"{self.share:.0%} of the plan's speed", target=target,
             )
         ]  # fmt: skip
 

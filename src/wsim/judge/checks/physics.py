@@ -71,7 +71,8 @@ class CheckExplosion(Check):
         # What spins may hand on the speed of its rim: a joint there, or the ground, makes it another's.
         speeds = [(math.hypot(*body.velocity), math.hypot(*body.angular_velocity)) for body in world.bodies]
         rims = zip(speeds, evidence.motion.radius, strict=True)
-        start = max((float(speed + spin * radius) for (speed, spin), radius in rims), default=0.0)
+        started = [math.hypot(*fluid.velocity) for fluid in world.fluids]
+        start = max((*started, *(float(speed + spin * radius) for (speed, spin), radius in rims)), default=0.0)
         return math.sqrt(max(start, surface_speed(evidence)) ** 2 + 2 * evidence.gravity * fall)
 
     def _bodies(self, evidence: Evidence, free: float) -> Finding:

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
 SHOWN = 12  # names in a message
 _UNITS = {"hinge": "deg", "slider": "m"}
-_STATES = {"static": "static and never moves", "fluid": "a fluid, which starts at rest"}
 
 
 def problems(plan: Draft) -> list[str]:
@@ -57,8 +56,15 @@ def _numbers(plan: Draft) -> Iterator[str]:
             yield f"objects.{i}.material.friction: {item.material.friction:g} must be <= {MAX_FRICTION:g}"
         for field in ("velocity", "angular_velocity_deg"):
             value = getattr(item, field)
-            if item.state in ("static", "fluid") and value is not None and any(value):
-                yield f"objects.{i}.{field}: {list(value)} of {item.name}, which is {_STATES[item.state]}; remove it"
+            if why := _ill_moved(item, field) if value is not None and any(value) else "":
+                yield f"objects.{i}.{field}: {list(value)} of {item.name}, which {why}; remove it"
+
+
+def _ill_moved(item: PlanObject, field: str) -> str:
+    """Why an object cannot start with a velocity, or a spin."""
+    if item.state == "static":
+        return "is static and never moves"
+    return "is a fluid, and starts without a spin" if item.state == "fluid" and field != "velocity" else ""
 
 
 def _names(plan: Draft) -> Iterator[str]:

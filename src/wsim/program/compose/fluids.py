@@ -32,6 +32,8 @@ def arguments(draft: Draft, item: PlanObject) -> list[str]:
         volume = item.size
         found = [f"size={tuple_of(item.size)}", f"position={tuple_of(position(item))}"]
     found.append(f"spacing={number(spacing_of(plan, item, volume))}")
+    if any(item.velocity):
+        found.append(f"velocity={tuple_of(item.velocity)}")
     if item.registration.viscosity is not None:
         found.append(f"viscosity={number(item.registration.viscosity)}")
     if any(objective.kind == "fills" and objective.object == item.name for objective in plan.objectives):
