@@ -181,8 +181,7 @@ class Simulation:
         if self.rigid:
             self.rigid.reset(self.state)
         if self.fluid:
-            self.fluid.reset_search()
-            self.fluid.take_wall_impulse()
+            self.fluid.restart()
 
     def _launched(self) -> list[compiling.Needed]:
         """What a step launches, and a picture; MuJoCo's C code is left out, which keeps what it is given."""
