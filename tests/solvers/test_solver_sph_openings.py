@@ -99,11 +99,12 @@ class Flow:
         return abs(self.at_start + come - gone - self.held()) / (self.at_start + come)
 
 
-def test_a_tap_raises_the_level_of_a_tank_by_its_volume_over_the_area():
+@pytest.mark.parametrize("depth", [0.0, 0.125])
+def test_a_tap_raises_the_level_of_a_tank_by_its_volume_over_the_area(depth):
     tap = Tap((0.0, 0.0, 0.35), (0.0, 0.0, -1.0), rate=0.005, radius=0.05, times=(0.9,), rates=(0.0,))
-    flow = Flow(0.125, (tap,), fast=2.5)
-    still = flow.free()[0][:, 2].mean()
-    flow.go(1.6)
+    flow = Flow(depth, (tap,), fast=2.5)
+    still = flow.free()[0][:, 2].mean() if depth else 0.0
+    flow.go(1.8)
     place, _ = flow.free()
     layer = len(places_of(tap, STEP)[0])
     assert poured_by(tap, flow.time) == pytest.approx(0.0045)

@@ -28,6 +28,8 @@ from wsim.solvers.sph_push import BodyPush
 from wsim.solvers.sph_search import ParticleSearch
 from wsim.solvers.sph_wall_impulse import LEAST_LANES, WallImpulse
 
+VENTED = 0.5  # times c / h: pressure leaves by a void in the time in which sound crosses a kernel's support
+
 
 class SolverSPH(SolverBase):
     """Weakly compressible SPH (Monaghan 1994) with density diffusion, walls and two-way coupled bodies.
@@ -117,6 +119,7 @@ class SolverSPH(SolverBase):
         method.speed_of_sound, method.diffusion = c.speed_of_sound, c.density_diffusion
         method.artificial_viscosity, method.laminar_factor = c.artificial_viscosity, c.laminar_factor
         method.background_pressure = c.background_pressure
+        method.vented = VENTED * c.speed_of_sound / h if self.openings else 0.0
         return method
 
     def _read_worlds(self) -> None:
