@@ -34,6 +34,7 @@ class Method:
     artificial_viscosity: float  # alpha
     laminar_factor: float  # about 2 (d + 2) in d dimensions
     background_pressure: float  # [Pa]
+    vented: float  # at which pressure leaves what has a void beside it [1/s]; 0: only by its flow
 
 
 @wp.func
@@ -86,6 +87,10 @@ def make_continuity(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         its pressure. It spans fluid alone, and so neither makes nor destroys volume in sum, but for single particles in
         a gap of bodies, which take on the pressure there (`push.make_push`).
 
+        Where drops come from taps and meet again, each has the density of water, and continuity has them press on each
+        other as soon as they are within reach, with voids between them: the heap would stand up to twice as high as its
+        volume. Beside a void is the air, whose pressure is 0; `vented` is the rate at which it gets in.
+
         `full` is how far each is from any void, in original order, for the next step's `boundary.compress`.
         """
         s = first + wp.tid()
@@ -120,7 +125,10 @@ def make_continuity(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         c2 = method.speed_of_sound * method.speed_of_sound
         rate = (c2 * rho0 + m[3]) * divergence + 2.0 * method.diffusion * method.h * method.speed_of_sound * smoothing
         least = enclosed * (LOWEST_DENSITY - 1.0) * rho0 * c2 - HELD_AT_SURFACE * wp.length(weight) * method.h
-        pressure[s] = wp.max(m[3] + dt * rate, least)
+        now = wp.max(m[3] + dt * rate, least)
+        if now > 0.0:
+            now *= wp.exp(-dt * method.vented * (1.0 - enclosed))
+        pressure[s] = now
 
     return continuity
 
