@@ -74,6 +74,25 @@ def test_container_and_fluid_come_back(world: World) -> None:
     assert water.velocity == (0.0, 0.0, 0.0)
     assert water.container == tank.prim == "/World/tank"
     assert water.color == pytest.approx((0.15, 0.4, 0.6))
+    assert water.attenuation_length is None
+
+
+@pytest.mark.parametrize(("length", "opacity"), [(0.0, 1.0), (0.02, 1.0 - np.exp(-10.0)), (1.0, 1.0 - np.exp(-0.2))])
+def test_how_clear_a_fluid_is_comes_back(length: float, opacity: float) -> None:
+    """As it was stated, and to tools that know no such law as the opacity of its longest edge."""
+    scene = Scene()
+    scene.fluid(
+        "cola",
+        size=(0.2, 0.1, 0.1),
+        position=(0, 0, 1),
+        spacing=0.02,
+        color=(0.1, 0.03, 0.01),
+        attenuation_length=length,
+    )
+    (cola,) = describe(scene.stage).fluids
+    assert cola.attenuation_length == length
+    look = scene.stage.GetPrimAtPath("/World/Looks/cola/surface")
+    assert look.GetAttribute("inputs:opacity").Get() == pytest.approx(opacity)
 
 
 def test_joints_come_back(world: World) -> None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from pxr import Gf, Sdf, UsdGeom
 
+from wsim.limits import MAX_SIZE, MIN_SIZE
 from wsim.scene import schema
 from wsim.scene.authoring import Handle, note_line, set_extent, set_pose
 from wsim.scene.materials import Look, Material, bind
@@ -14,7 +16,7 @@ from wsim.scene.tanks import Tank, Tanks
 from wsim.scene.validate import Call, Vec3, shown, suggestion
 
 _WATER: Vec3 = (0.15, 0.4, 0.6)
-_OPACITY = 0.6
+_OPACITY = 0.6  # that USD's own tools draw it with, where nothing says how clear it is
 _TOUCH = 1e-6  # [m]: rounding, not overlap
 
 
@@ -54,6 +56,7 @@ class Fluids(Tanks):
         viscosity: float = 0.001,
         speed_of_sound: float = 0.0,
         color: Sequence[float] = _WATER,
+        attenuation_length: float | None = None,
     ) -> Fluid:
         """Fill a tank up to a level, or stand a free box of fluid somewhere.
 
@@ -61,7 +64,7 @@ class Fluids(Tanks):
             name: Name of the prim.
             spacing: Distance between particles [m].
             fills: The tank to fill, with `level`.
-            level: Depth above the tank's inner floor [m].
+            level: Depth above the tank's inner floor [m]; 0 for what a `tap` is to pour.
             size: Instead of `fills`: edges (x, y, z) of a box of fluid [m], with `position`.
             position: Centre of that box [m].
             container: The tank that box stands in; found by itself where the box lies inside one.
@@ -70,6 +73,9 @@ class Fluids(Tanks):
             viscosity: Dynamic viscosity [Pa s]; water 0.001, honey 10.
             speed_of_sound: Numerical, of weakly compressible SPH [m/s]; 0 lets the solver choose.
             color: Linear RGB.
+            attenuation_length: How clear it is: the way through it after which 1/e of the light is left [m], and has
+                taken on its colour. 0 hides all that is in it (paint, lava); milk 0.001, cola 0.02, oil 0.1; not
+                given, it is as clear as water, however large.
 
         Raises:
             SceneError: If the fluid does not fit its tank, is thinner than one particle, overlaps another fluid, or
@@ -92,8 +98,9 @@ class Fluids(Tanks):
                 call.fail("give fills= and level=, or size= and position= of a free box of fluid")
             edges, center = call.sizes("size", size), call.position("position", position)
             tank = self._holder(call, edges, center, container)
-        _check_thickness(call, edges, step, "level" if fills is not None else "size", "the fluid")
-        call.particles(edges, step)
+        if edges[2] > 0.0:
+            _check_thickness(call, edges, step, "level" if fills is not None else "size", "the fluid")
+            call.particles(edges, step)
         fluid = Fluid(name=name, path=path, kind="fluid", size=edges, center=center, spacing=step)
         self._check_overlap(call, fluid)
         values = {
@@ -107,11 +114,21 @@ class Fluids(Tanks):
                 call.within("speed_of_sound", speed_of_sound, 0.0, 1e4, "m/s"),
             ),
         }
-        self._author_fluid(fluid, values, tank, call.color("color", color))
+        opacity = _OPACITY
+        if attenuation_length is not None:
+            length = call.within("attenuation_length", attenuation_length, 0.0, MAX_SIZE, "m")
+            values["attenuationLength"] = (Sdf.ValueTypeNames.Double, length)
+            opacity = 1.0 - math.exp(-max(edges) / length) if length > 0.0 else 1.0
+        self._author_fluid(fluid, values, tank, call.color("color", color), opacity)
         return fluid
 
     def _author_fluid(
-        self, fluid: Fluid, values: dict[str, tuple[Sdf.ValueTypeName, object]], tank: Tank | None, color: Vec3
+        self,
+        fluid: Fluid,
+        values: dict[str, tuple[Sdf.ValueTypeName, object]],
+        tank: Tank | None,
+        color: Vec3,
+        opacity: float,
     ) -> None:
         prim = UsdGeom.Xform.Define(self._stage, fluid.path).GetPrim()
         note_line(prim)
@@ -122,15 +139,16 @@ class Fluids(Tanks):
             relation.SetTargets([Sdf.Path(tank.path)])
         cube = UsdGeom.Cube.Define(self._stage, f"{fluid.path}/volume")
         cube.CreateSizeAttr(1.0)
-        set_pose(cube.GetPrim(), (0.0, 0.0, 0.0), scale=fluid.size)
+        # One that is empty yet is a film, which carries its look.
+        set_pose(cube.GetPrim(), (0.0, 0.0, 0.0), scale=(fluid.size[0], fluid.size[1], max(fluid.size[2], MIN_SIZE)))
         set_extent(cube.GetPrim())
         note_line(cube.GetPrim())
-        bind(cube.GetPrim(), self._water(fluid.name, color))
+        bind(cube.GetPrim(), self._liquid(fluid.name, color, opacity))
         self._fluids.append(fluid)
 
-    def _water(self, name: str, color: Vec3) -> Material:
+    def _liquid(self, name: str, color: Vec3, opacity: float) -> Material:
         call = Call("fluid", name)
-        return self._surface(call, None, None, None, color, opacity=_OPACITY, look=Look(roughness=0.02, ior=1.33))
+        return self._surface(call, None, None, None, color, opacity=opacity, look=Look(roughness=0.02, ior=1.33))
 
     def _tank(self, call: Call, field: str, what: Handle | str) -> Tank:
         path = str(self._find(call, field, what).GetPath())
@@ -166,7 +184,9 @@ def _filling(call: Call, tank: Tank, level: float | None) -> tuple[Vec3, Vec3]:
     """Size and centre of the fluid in a tank [m]."""
     if level is None:
         call.fail("fills is given without level, the depth above the tank's inner floor in m")
-    depth = call.size("level", level)
+    depth = call.number("level", level, "m")
+    if depth != 0.0:
+        depth = call.size("level", level)
     if depth > tank.inner_size[2] + _TOUCH:
         call.fail(
             f'level = {depth:g} m is above the rim of tank "{tank.name}": its hollow is {tank.inner_size[2]:g} m high'

@@ -41,8 +41,9 @@ class CameraImage:
     Attributes:
         rgb: (H, W, 3) uint8, sRGB.
         shape_index: (H, W) int32, index into `model.shape_label` of the opaque shape seen through glass and water;
-            -1 where there is none.
-        depth: (H, W) float32, distance of that shape along the camera's optical axis [m]; 0 where there is none.
+            -1 where there is none, and where a fluid lets less than 2 % of its light through.
+        depth: (H, W) float32, distance of that shape along the camera's optical axis [m], and where a fluid hides it
+            of the fluid; 0 where there is none.
     """
 
     rgb: np.ndarray
@@ -187,8 +188,10 @@ class CameraRenderer:
     def _init_fluids(self, world_index: int) -> None:
         fluids = self.world.fluids
         self._fluid_mesh = FluidMesh(self.model, self.world, world_index)
-        extinction = [tuple(render_materials.extinction_of_fluid(f)) for f in fluids]
-        self._fluid_extinction = wp.array(extinction or [(0.0, 0.0, 0.0)], dtype=wp.vec3f, device=self._device)
+        extinction = np.array([render_materials.extinction_of_fluid(f) for f in fluids] or [np.zeros(3)])
+        self._fluid_extinction = wp.array(extinction, dtype=wp.vec3f, device=self._device)
+        opaque = [1.0 - np.exp(-a.mean() * f.spacing) for a, f in zip(extinction, fluids, strict=False)] or [0.0]
+        self._fluid_opaque = wp.array(opaque, dtype=wp.float32, device=self._device)
         colors = [f.color for f in fluids] or [(0.0, 0.0, 0.0)]
         self._fluid_color = wp.array(colors, dtype=wp.vec3f, device=self._device)
         gaps = [1.6 * f.spacing for f in fluids] or [0.0]
@@ -248,6 +251,7 @@ class CameraRenderer:
         look.sun_direction = wp.vec3(*self._sun)
         look.sun_color = wp.vec3(*style.sun_color)
         look.ambient = wp.vec3(*style.ambient_up)
+        look.ambient_below = wp.vec3(*style.ambient_down)
         look.zenith = wp.vec3(*style.zenith)
         look.horizon = wp.vec3(*style.horizon)
         look.fog_distance = 34.0 * max(radius, 1e-3)
@@ -317,7 +321,7 @@ class CameraRenderer:
         media.glass_extinction, media.glass_color = glass.extinction, glass.color
         media.fluid_mesh, media.fluid_normals, media.fluid_of_vertex = mesh.id, mesh.normals, mesh.fluid_of_vertex
         media.fluid_extinction, media.fluid_color = self._fluid_extinction, self._fluid_color
-        media.fluid_gap = self._fluid_gap
+        media.fluid_opaque, media.fluid_gap = self._fluid_opaque, self._fluid_gap
         return media
 
     def _compile(self, progress: Progress) -> None:

@@ -15,6 +15,7 @@ from wsim.geometry.filled import box_lattice
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.geometry.shapes import into, kind_of, reach
 from wsim.scene.world import Fluid, Shape, World
+from wsim.sim.openings import fastest_poured, waiting
 from wsim.solvers.inside import depth_in, solid_of
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.sph_config import ConfigSPH
@@ -27,21 +28,27 @@ Depth = Callable[[Array], Array]
 
 @dataclass(frozen=True)
 class Seeded:
-    """The particles of one fluid: positions [m] and velocities [m/s] (n, 3), masses [kg] and pressures [Pa] (n,)."""
+    """The particles of one fluid, n of them: positions [m] and velocities [m/s] (n, 3), masses [kg], pressures [Pa] and
+    `ParticleFlags`.
+
+    Those that wait for taps follow the others; they are not `ParticleFlags.ACTIVE`.
+    """
 
     prim: str
     position: Array
     velocity: Array
     mass: Array
     pressure: Array
+    flags: Array
 
 
-def containers_of(world: World) -> tuple[OpenBox, ...]:
-    """The tanks of a world, with the labels of the wall shapes that each stands for."""
+def containers_of(world: World, k: int = -1) -> list[OpenBox]:
+    """The tanks of world k, or of all, with the labels of the wall shapes that each stands for."""
     walls = {static.prim: frozenset(shape.prim for shape in static.shapes) for static in world.statics}
-    return tuple(
-        OpenBox(c.inner_center, c.inner_size, c.rotation, walls.get(c.prim, frozenset())) for c in world.containers
-    )
+    return [
+        OpenBox(c.inner_center, c.inner_size, c.rotation, walls.get(c.prim, frozenset()), world=k)
+        for c in world.containers
+    ]
 
 
 def common_fluid(world: World) -> Fluid:
@@ -96,9 +103,9 @@ def largest_step(world: World, config: ConfigSPH) -> float:
 
 
 def expected_speed(world: World) -> float:
-    """Largest speed that the fluid should see [m/s]: its start, waves or a collapse, and bodies that fall in."""
+    """Largest speed that the fluid should see [m/s]: its start, waves or a collapse, jets, and bodies that fall in."""
     g = float(np.linalg.norm(world.gravity))
-    speeds = [0.1]
+    speeds = [0.1, fastest_poured(world, g)]
     for fluid in world.fluids:
         # A fluid that fills its container from wall to wall can only slosh, at the shallow-water wave's speed;
         # a column in one falls by its height, a free one to the lowest that there is.
@@ -148,20 +155,38 @@ def mesh_depths(builder: Any, world: World) -> dict[str, list[Depth]]:
     return found
 
 
-def seed(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Seeded:
-    """Particles of a box of fluid as it rests under its own weight, without those where a solid already is.
+def seed(fluid: Fluid, world: World, config: ConfigSPH, meshes: dict[str, list[Depth]]) -> Seeded:
+    """Particles of a fluid: of its box, and those that wait for its taps.
 
     The mass of each is the fluid's density times its cell, so that the fluid's mass is right whatever the spacing.
     The pressure is hydrostatic.
 
     Args:
-        fluid: The box.
-        world: For gravity, and for the bodies and fixed objects that stand in the fluid.
+        fluid: The box; one of no height holds nothing yet.
+        world: For gravity, taps, and the bodies and fixed objects that stand in the fluid.
+        config: Settings of the method.
         meshes: What `mesh_depths` found of those.
     """
     cells = box_lattice(np.array(fluid.size), fluid.spacing)
+    volume = float(cells.volume[0]) or fluid.spacing**3
+    position = _standing(fluid, world, cells.position, meshes) if fluid.size[2] > 0.0 else np.zeros((0, 3))
+    depth = 0.5 * fluid.size[2] + fluid.center[2] - position[:, 2]
+    pressure = fluid.density * abs(world.gravity[2]) * np.maximum(depth, 0.0)
+    there, count = len(position), waiting(fluid, world, config, volume)
+    return Seeded(
+        prim=fluid.prim,
+        position=np.concatenate([position, np.zeros((count, 3))]),
+        velocity=np.repeat([fluid.velocity, (0.0, 0.0, 0.0)], [there, count], axis=0),
+        mass=np.full(there + count, fluid.density * volume),
+        pressure=np.append(pressure, np.zeros(count)),
+        flags=np.repeat(np.array([int(ParticleFlags.ACTIVE), 0], dtype=np.int32), [there, count]),
+    )
+
+
+def _standing(fluid: Fluid, world: World, cells: Array, meshes: dict[str, list[Depth]]) -> Array:
+    """Where particles of a box of fluid are, of cells in its frame: not where a solid already is, (n, 3) [m]."""
     rotation = next((c.rotation for c in world.containers if c.prim == fluid.container), (0.0, 0.0, 0.0, 1.0))
-    position = rotate(np.array(rotation), cells.position) + np.array(fluid.center)
+    position = rotate(np.array(rotation), cells) + np.array(fluid.center)
     free = np.ones(len(position), dtype=bool)
     margin, tanks = 0.4 * fluid.spacing, {container.prim for container in world.containers}
     for body in world.bodies:
@@ -170,20 +195,12 @@ def seed(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Seeded:
     for static in world.statics:
         if static.prim not in tanks:  # whose fluid is cut to its walls
             free &= ~_inside(static.shapes, position, margin, meshes.get(static.prim, []))
-    position = position[free]
-    if len(position) == 0:
+    if not free.any():
         raise UserError(f"{fluid.prim}: bodies leave no room for fluid of spacing {fluid.spacing} m in {fluid.size} m")
-    depth = 0.5 * fluid.size[2] + fluid.center[2] - position[:, 2]
-    return Seeded(
-        prim=fluid.prim,
-        position=position,
-        velocity=np.tile(fluid.velocity, (len(position), 1)),
-        mass=fluid.density * cells.volume[free],
-        pressure=fluid.density * abs(world.gravity[2]) * np.maximum(depth, 0.0),
-    )
+    return position[free]
 
 
-def add_seeded(builder: Any, worlds: Sequence[World]) -> tuple[list[dict[str, slice]], Array]:
+def add_seeded(builder: Any, worlds: Sequence[World], config: ConfigSPH) -> tuple[list[dict[str, slice]], Array]:
     """Fill the worlds of a builder that has no particles with fluid, as arrays.
 
     Returns:
@@ -191,7 +208,7 @@ def add_seeded(builder: Any, worlds: Sequence[World]) -> tuple[list[dict[str, sl
     """
     parts, ranges = [], []
     for world in worlds:
-        seeded = [seed(fluid, world, {}) for fluid in world.fluids]
+        seeded = [seed(fluid, world, config, {}) for fluid in world.fluids]
         ends = np.cumsum([0, *(len(each.mass) for each in seeded)]).tolist()
         ranges.append({each.prim: slice(*ends[k : k + 2]) for k, each in enumerate(seeded)})
         parts += seeded
@@ -201,7 +218,7 @@ def add_seeded(builder: Any, worlds: Sequence[World]) -> tuple[list[dict[str, sl
     builder.particle_mass = np.concatenate([part.mass for part in parts]).astype(np.float32)
     radii = [0.5 * fluid.spacing for world in worlds for fluid in world.fluids]
     builder.particle_radius = np.repeat(np.array(radii, dtype=np.float32), [len(part.mass) for part in parts])
-    builder.particle_flags = np.full(sum(counts), int(ParticleFlags.ACTIVE), dtype=np.int32)
+    builder.particle_flags = np.concatenate([part.flags for part in parts])
     builder.particle_world = np.repeat(np.arange(len(worlds), dtype=np.int32), counts)
     return ranges, np.concatenate([part.pressure for part in parts]).astype(np.float32)
 

@@ -21,17 +21,21 @@ if TYPE_CHECKING:
 OPAQUE = 0.995  # opacity from which a shape is drawn opaque
 GLASS_GLOW = 0.35  # share of its colour that a thick piece of glass shows of itself: its edges read dark
 SHADES, GOLDEN = 0.12, 0.618034  # of sRGB's values
-CLARITY = 1.2  # how much of a fluid's depth of colour shows across its largest edge
+CLARITY = 1.2  # how much of its colour a fluid that states no attenuation length shows across its largest edge
+SHORTEST = 1.0e-5  # [m]: attenuation length of what lets no light through
 
 
 def extinction_of_fluid(fluid: Fluid) -> np.ndarray:
     """Beer-Lambert coefficients of a fluid for red, green and blue [1/m], (3,).
 
-    White light has taken on the fluid's colour, in part (`CLARITY`), after the longest edge of the box of fluid: a
-    beaker and a pool look alike.
+    They are to each other as the logarithms of its colour, so that white light takes on that colour on its way, and
+    their mean is one over the attenuation length. Of a fluid that states none, white light has taken on the colour, in
+    part (`CLARITY`), after the longest edge of the box of fluid: a beaker and a pool look alike.
     """
-    color = np.clip(np.asarray(fluid.color, dtype=np.float64), 0.02, 0.98)
-    return -np.log(color) * CLARITY / max(fluid.size)
+    tint = -np.log(np.clip(np.asarray(fluid.color, dtype=np.float64), 0.02, 0.98))
+    if fluid.attenuation_length is None:
+        return tint * CLARITY / max(fluid.size)
+    return tint / tint.mean() / max(fluid.attenuation_length, SHORTEST)
 
 
 def extinction_of_glass(shape: Shape, thickness: float) -> np.ndarray:

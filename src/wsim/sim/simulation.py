@@ -181,8 +181,7 @@ class Simulation:
         if self.rigid:
             self.rigid.reset(self.state)
         if self.fluid:
-            self.fluid.reset_search()
-            self.fluid.take_wall_impulse()
+            self.fluid.restart()
 
     def _launched(self) -> list[compiling.Needed]:
         """What a step launches, and a picture; MuJoCo's C code is left out, which keeps what it is given."""
@@ -200,7 +199,10 @@ class Simulation:
         return needed
 
     def _make_fluid(self) -> SolverSPH | None:
-        return SolverSPH(self.model, self.built.sph, self.built.containers) if self.built.sph else None
+        built = self.built
+        if not built.sph:
+            return None
+        return SolverSPH(self.model, built.sph, built.containers, built.taps, built.drains)
 
     def step(self) -> None:
         """Advance by one time step: the fluid pushes the bodies, then the bodies move."""

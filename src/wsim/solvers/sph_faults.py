@@ -21,7 +21,7 @@ def inspected(search: ParticleSearch, state: newton.State) -> tuple[np.ndarray, 
         wp.launch(
             inspect,
             dim=count,
-            inputs=[search.grid, fluid.world, state.particle_q, state.particle_qd, state.sph.pressure],
+            inputs=[search.grid, fluid.world, state.particle_q, state.particle_qd, state.sph.pressure, fluid.stage],
             outputs=[broken, fastest2, outside],
         )
     return broken.numpy(), np.sqrt(fastest2.numpy()), outside.numpy()

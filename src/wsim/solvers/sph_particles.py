@@ -21,6 +21,7 @@ class SortedParticles:
         world_count: Number of worlds.
         capacity: Neighbours that a list has room for; 0 where cells are walked.
         kind: `FLUID`, `WALLS` or `BODIES`.
+        stage: Of each, where some may be parked (`wsim.kernels.sph.openings`).
 
     Attributes:
         count: Number of particles n.
@@ -32,13 +33,22 @@ class SortedParticles:
         species: What kernels take.
     """
 
-    def __init__(self, world: np.ndarray, grid: Any, world_count: int, capacity: int, kind: int) -> None:
+    def __init__(
+        self,
+        world: np.ndarray,
+        grid: Any,
+        world_count: int,
+        capacity: int,
+        kind: int,
+        stage: wp.array | None = None,
+    ) -> None:
         n = self.count = len(world)
         cells = cells_of(grid) * world_count if n else 0
         self.grid, self.cells_per_world = grid, cells_of(grid)
         self.key_bits = max(1, cells.bit_length())
         self.world_first = np.append(0, np.cumsum(np.bincount(world, minlength=world_count))).tolist()
         self.world = wp.array(world.astype(np.int32), dtype=int)
+        self.stage = wp.empty(0, dtype=int) if stage is None else stage
         self.key, self.value = wp.empty(2 * n, dtype=int), wp.empty(2 * n, dtype=int)
         # Where all worlds are sorted together the sort works on the order itself.
         apart = world_count > 1 and capacity > 0
@@ -52,6 +62,7 @@ class SortedParticles:
         self.species: Any = Species()
         self.species.order, self.species.world = self.order, self.world
         self.species.point, self.species.motion = self.point, self.motion
+        self.species.full = self.full = wp.zeros(n if kind == FLUID else 0, dtype=float)
         self.species.facing = self.facing = wp.zeros(0 if kind == FLUID else n, dtype=wp.vec4)
         self.species.across = self.across = wp.zeros(n if kind == BODIES else 0, dtype=wp.vec4)
         self.species.handed = self.handed = wp.zeros(n if kind == BODIES else 0, dtype=wp.vec4)
@@ -80,7 +91,7 @@ class SortedParticles:
         wp.launch(
             grid_kernels.assign_cells,
             dim=last - first,
-            inputs=[first, self.grid, self.order, position, self.world],
+            inputs=[first, self.grid, self.order, position, self.world, self.stage],
             outputs=[self.key, self.value, self.cell_count],
         )
         wp.utils.array_scan(counted, start, inclusive=False)

@@ -205,9 +205,9 @@ class _Finder:
             find_strays,
             dim=len(self._stray),
             inputs=[
-                self._world, state.particle_q, state.particle_qd, self._model.gravity, seconds,
-                wp.vec3(*self._tiles.inverse), self._guard, wp.vec3(*self._low), wp.vec3(*self._high), *self._hollows,
-                self._home,
+                self._world, self._model.particle_flags, state.particle_q, state.particle_qd, self._model.gravity,
+                seconds, wp.vec3(*self._tiles.inverse), self._guard, wp.vec3(*self._low), wp.vec3(*self._high),
+                *self._hollows, self._home,
             ],
             outputs=[self._stray, self._strays],
             device=self._model.device,

@@ -88,6 +88,8 @@ def sorted_world(config: ConfigSPH, places, worlds, lists: bool):
             volume = rng.uniform(0.5, 1.5, kind.count) * config.spacing**3
             kind.point.assign(np.column_stack([place, volume]).astype(np.float32)[order])
             kind.motion.assign(rng.normal(size=(kind.count, 4)).astype(np.float32)[order])
+            if kind.full.shape[0]:
+                kind.full.assign(rng.uniform(size=kind.count).astype(np.float32)[order])
             kinds.append(kind)
         reach = int(grid.reach[1]), int(grid.reach[2])
         programs = Programs.make(lists, tuple(map(bool, config.periodic)), not lists, reach, (WALLS, BODIES))
@@ -159,7 +161,8 @@ def test_walking_the_cells_gives_the_sums_of_the_lists(periodic):
             given_back = original(kinds[1], walls.motion)[:, 3]
             assert (given_back != 0.0).any()
             inputs = [*shared, gravity, fluid, walls, bodies, 1e-3]
-            wp.launch(programs.continuity, n, inputs, [pressure])
+            full = wp.zeros(n, dtype=float)
+            wp.launch(programs.continuity, n, inputs, [pressure, full])
             wp.launch(gather_bodies, kinds[2].count, [bodies.order, owner, handed], [bodies.handed])
             for kind in kinds[1:]:
                 inputs = [*shared, viscosity, gravity, fluid, kind.species]

@@ -34,11 +34,11 @@ class CheckFluidMass(Check):
         return [self._mass(evidence, fluid) for fluid in evidence.world.fluids]
 
     def _mass(self, evidence: Evidence, fluid: Fluid) -> Finding:
-        count = evidence.track(fluid).position.shape[1]
-        cells = math.prod(max(1, round(length / fluid.spacing)) for length in fluid.size)
+        track = evidence.track(fluid)
+        count = int(track.count[0]) if len(track.time) else 0
         volume = math.prod(fluid.size)
         inside = sum(self._drowned(evidence, fluid, i) for i in range(len(evidence.world.bodies)))
-        value = fluid.density * volume * count / cells
+        value = fluid.density * fluid.cell * count
         expected = fluid.density * max(volume - inside, 0.0)
         # A body pushes out the particles whose centres are in it or near: up to a layer of half a spacing all round.
         skin = sum(self._skin(evidence, fluid, i) for i in range(len(evidence.world.bodies)))
@@ -205,7 +205,7 @@ class CheckHydrostatic(Check):
             return None
         level = evidence.level(fluid)
         height = level.height - level.floor
-        speed = math.sqrt(float(np.mean(np.einsum("tni,tni->tn", track.velocity[frames], track.velocity[frames]))))
+        speed = math.sqrt(float(track.mean(np.einsum("tni,tni->tn", track.velocity, track.velocity))[frames].mean()))
         if height < self.layers * fluid.spacing or speed > self.still * evidence.velocity_scale(height):
             return None
         depth = level.height - np.asarray(track.position[frames, :, 2], dtype=np.float64)

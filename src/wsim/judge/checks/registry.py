@@ -24,6 +24,7 @@ from wsim.judge.checks import (
     lift,
     mass,
     motion,
+    openings,
     physics,
     plan,
     plan_closed,
@@ -53,7 +54,7 @@ PHYSICS = (
     physics, settled, stated, scheduled, continuity, motion, forces, recorded, recorded_state, recorded_ties, impacts,
     rolling, catches, energy, contact, rest, joint, cord, mass, plan, plan_closed, plan_joints, plan_cords,
     plan_contacts, plan_motion, plan_vehicles, plan_land,
-    fluid, fluid_books, fluid_push, lift, fluid_height, water, camera,
+    fluid, openings, fluid_books, fluid_push, lift, fluid_height, water, camera,
 )  # fmt: skip
 
 

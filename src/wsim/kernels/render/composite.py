@@ -1,9 +1,10 @@
 """Glass and water drawn over an opaque picture, along the same camera rays.
 
 Each pixel's ray is cut at every face of a glass shape or a fluid's surface, up to the opaque hit. A piece inside a
-medium absorbs by the Beer-Lambert law and scatters a little light of the medium's own; a face between two media of
-different refractive index reflects the sky by Schlick's approximation of Fresnel's equations (C. Schlick, "An
-Inexpensive BRDF Model for Physically-based Rendering", 1994). Rays are not bent.
+medium absorbs by the Beer-Lambert law and scatters light of the medium's own, all the more the less comes through: a
+fluid that hides what is in it, as milk, is so lit at its face, as a solid is, and a clear one within. A face between
+two media of different refractive index reflects the sky by Schlick's approximation of Fresnel's equations (C. Schlick,
+"An Inexpensive BRDF Model for Physically-based Rendering", 1994). Rays are not bent.
 
 All colours are linear RGB.
 """
@@ -21,10 +22,11 @@ from wsim.kernels.render.faces import (
     fresnel,
     stretch_after,
 )
-from wsim.kernels.render.sky import FAR, Look, opaque_color, sky
+from wsim.kernels.render.sky import FAR, Look, daylight, opaque_color, sky
 
 MAX_FACES = wp.constant(32)  # faces that one ray may cross
 NO_SHAPE = wp.constant(wp.uint32(0xFFFFFFF0))  # shape indices from here on are the camera's marks, not shapes
+UNSEEN = wp.constant(0.02)  # contrast that the eye no longer sees (H. Koschmieder, 1924)
 EDGE_SHINE = wp.constant(0.3)  # share of the sky's light that an edge shows
 
 
@@ -34,6 +36,8 @@ class Light:
 
     seen: wp.vec3
     through: wp.vec3  # share of the light from here on that reaches the eye
+    fluid_through: wp.vec3  # share that the fluids on the way let through
+    fluid_at: float  # [m]: where the first of them begins
 
 
 @wp.func
@@ -45,28 +49,39 @@ def reflected_share(before: Stretch, ior: float, direction: wp.vec3, look: Look)
 
 
 @wp.func
-def absorb(light: Light, ahead: Stretch, length: float, day: wp.vec3, look: Look) -> Light:
+def absorb(light: Light, before: Stretch, ahead: Stretch, direction: wp.vec3, length: float, look: Look) -> Light:
     """The light after a stretch of a medium (Beer-Lambert), with a little of the medium's own."""
     made = light
+    day = daylight(wp.vec3(0.0, 0.0, 1.0), look)
+    if ahead.opaque > 0.0:
+        # What no light fills is lit where it begins.
+        facing = wp.where(wp.dot(direction, before.normal) < 0.0, before.normal, -before.normal)
+        day = wp.lerp(day, daylight(facing, look), ahead.opaque)
     extinction = ahead.extinction
     kept = wp.vec3(wp.exp(-extinction[0] * length), wp.exp(-extinction[1] * length), wp.exp(-extinction[2] * length))
     glow = wp.cw_mul(wp.cw_mul(ahead.own, day), wp.vec3(1.0) - kept) * look.scatter
     made.seen = light.seen + wp.cw_mul(light.through, glow)
     made.through = wp.cw_mul(light.through, kept)
+    if ahead.ior == IOR_WATER:
+        if light.fluid_at < 0.0:
+            made.fluid_at = before.t
+        made.fluid_through = wp.cw_mul(light.fluid_through, kept)
     return made
 
 
 @wp.func
 def through_media(
     media: Media, look: Look, origin: wp.vec3, direction: wp.vec3, t_end: float, behind: wp.vec3
-) -> wp.vec3:
-    """The colour of a ray that runs through glass and water to `t_end`, where it meets `behind`."""
+) -> Light:
+    """The light of a ray that runs through glass and water to `t_end`, where it meets `behind`."""
     boxes = boxes_along(media, origin, direction, t_end)
-    day = look.ambient + look.sun_color * wp.max(-look.sun_direction[2], 0.0)
+    day = daylight(wp.vec3(0.0, 0.0, 1.0), look)
     # A face that lies on an opaque shape, as a tank's floor on the ground, is that shape's.
     t_last = t_end - 1.0e-4 * (1.0 + t_end)
     light = Light()
     light.through = wp.vec3(1.0)
+    light.fluid_through = wp.vec3(1.0)
+    light.fluid_at = -1.0
     before = Stretch()  # its refractive index is 0: not known yet
     wet = wp.bool(False)
     fluid = Face()
@@ -86,12 +101,13 @@ def through_media(
             light.seen += wp.cw_mul(light.through, reflected) * share
             light.through = light.through * (1.0 - share)
         if ahead.ior != IOR_AIR:
-            light = absorb(light, ahead, wp.min(ahead.t, t_end) - before.t, day, look)
-        if ahead.t >= t_last:
+            light = absorb(light, before, ahead, direction, wp.min(ahead.t, t_end) - before.t, look)
+        if ahead.t >= t_last or wp.max(light.through) < 1.0e-4:
             break
         wet = wet or ahead.ior == IOR_WATER
         before = ahead
-    return light.seen + wp.cw_mul(light.through, behind)
+    light.seen += wp.cw_mul(light.through, behind)
+    return light
 
 
 @wp.kernel(enable_backward=False)
@@ -108,8 +124,8 @@ def composite(
     look: Look,
     # Data out:
     out_color: wp.array2d(dtype=wp.vec3f),  # linear
-    out_depth: wp.array2d(dtype=float),  # [m], along the optical axis; 0 where nothing is
-    out_shape: wp.array2d(dtype=wp.int32),  # -1 where nothing is
+    out_depth: wp.array2d(dtype=float),  # [m], along the optical axis, of a fluid that hides all; 0 where nothing is
+    out_shape: wp.array2d(dtype=wp.int32),  # -1 where nothing is, or a fluid hides it
 ):
     """Blend glass and fluids over the opaque picture, and give the opaque picture's depth and shapes."""
     local_row, column = wp.tid()
@@ -131,4 +147,8 @@ def composite(
         out_shape[row, column] = -1
         out_depth[row, column] = 0.0
     behind = opaque_color(origin, direction, t_end, opaque_light[0, row, column], ground, look)
-    out_color[row, column] = through_media(media, look, origin, direction, t_end, behind)
+    light = through_media(media, look, origin, direction, t_end, behind)
+    out_color[row, column] = light.seen
+    if wp.max(light.fluid_through) < UNSEEN:
+        out_shape[row, column] = -1
+        out_depth[row, column] = light.fluid_at * wp.dot(direction, axis)

@@ -30,6 +30,7 @@ class Media:
     fluid_of_vertex: wp.array(dtype=wp.int32)
     fluid_extinction: wp.array(dtype=wp.vec3f)  # [1/m]
     fluid_color: wp.array(dtype=wp.vec3f)
+    fluid_opaque: wp.array(dtype=float)  # share of the light that does not come through one particle
     fluid_gap: wp.array(dtype=float)  # [m]: thinner sheets of air in a fluid are not drawn
 
 
@@ -204,6 +205,7 @@ class Stretch:
     ior: float
     extinction: wp.vec3  # [1/m]
     own: wp.vec3  # the medium's colour
+    opaque: float  # share of its light that is scattered at the face where it begins: 0 of what light fills
 
 
 @wp.func
@@ -223,6 +225,7 @@ def stretch_after(
             ahead.ior = IOR_WATER
             ahead.extinction = media.fluid_extinction[fluid.medium]
             ahead.own = media.fluid_color[fluid.medium]
+            ahead.opaque = media.fluid_opaque[fluid.medium]
     for slot in range(boxes.count):
         if boxes.t_out[slot] > start:
             inside = boxes.t_in[slot] <= start
@@ -234,6 +237,7 @@ def stretch_after(
                 ahead.ior = IOR_GLASS
                 ahead.extinction = media.glass_extinction[boxes.glass[slot]]
                 ahead.own = media.glass_color[boxes.glass[slot]]
+                ahead.opaque = 0.0
     for glass in range(media.glass_boxes, media.glass_shape.shape[0]):
         pose = media.shape_pose[media.glass_shape[glass]]
         back = wp.transform_inverse(pose)
@@ -248,6 +252,7 @@ def stretch_after(
             ahead.ior = IOR_GLASS
             ahead.extinction = media.glass_extinction[glass]
             ahead.own = media.glass_color[glass]
+            ahead.opaque = 0.0
     if box >= 0:
         pose = media.shape_pose[media.glass_shape[box]]
         half = media.glass_half[box]

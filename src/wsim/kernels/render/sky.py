@@ -13,6 +13,7 @@ class Look:
     sun_direction: wp.vec3  # unit, from the sun into the scene
     sun_color: wp.vec3
     ambient: wp.vec3  # radiance from above
+    ambient_below: wp.vec3  # and from below
     zenith: wp.vec3
     horizon: wp.vec3
     fog_distance: float  # [m]: where the ground has mostly faded into the horizon
@@ -33,6 +34,13 @@ def sky(direction: wp.vec3, look: Look) -> wp.vec3:
     if toward_sun > BESIDE_SUN:
         glow += 12.0 * wp.pow(toward_sun, 1200.0)
     return color + look.sun_color * glow
+
+
+@wp.func
+def daylight(normal: wp.vec3, look: Look) -> wp.vec3:
+    """The light that falls on a face: of the sun by Lambert's law, and of all around."""
+    around = wp.lerp(look.ambient_below, look.ambient, 0.5 + 0.5 * normal[2])
+    return around + look.sun_color * wp.max(-wp.dot(look.sun_direction, normal), 0.0)
 
 
 @wp.func

@@ -67,9 +67,11 @@ def make_compress(sums: PairSums) -> wp.Kernel:
         back to the same fluid with the same weights: continuity is the adjoint of the push, as it is between fluid
         particles (Bonet & Lok 1999, section 3). Where the wall does not push, it gives nothing back.
 
-        Fixed walls alone do, to water that no body is near: water that comes to a dry wall is compressed twice on its
-        way, and stands off. A tank is full at the start, but a body that falls into it would float a fifth of a spacing
-        too high, and drive the water under it into the floor.
+        Fixed walls alone do, to water that has neither a void beside it (`Species.full`) nor a body near it. Water that
+        comes to a dry wall would be compressed twice on its way, and stand off: the front of a dam break came 0.06 s
+        late to the far wall, and hit it with up to five times the pressure. A body that falls into a tank would float
+        a fifth of a spacing too high, and drive the water under it into the floor. A surface that takes nothing back
+        costs the slowest tone of a tank, where walls are near to all its water, 1.3 % of its strength in a period.
 
         `motion` is that of the walls: at rest, and what they give back.
         """
@@ -120,7 +122,7 @@ def make_extrapolate(sums: PairSums) -> wp.Kernel:
         them with water. Both forms are linear in v_b, so that its mean, weighted with the viscosities, serves both.
 
         `motion` is that of the solid: its own velocity comes in, the mirrored one and the pressure go out; `DRY` where
-        no fluid is near. `facing` gets the way to the fluid.
+        no fluid is near. `facing` gets the way to the fluid, and sum W.
         """
         s = first + wp.tid()
         p = load_record(solid.point, s)
@@ -143,7 +145,7 @@ def make_extrapolate(sums: PairSums) -> wp.Kernel:
             share = artificial / wp.max(artificial + laminar, TINY)
             v = own + share * slip - (1.0 - share) * past
             motion[s] = wp.vec4(v[0], v[1], v[2], pressure)
-            facing[s] = wp.vec4(normal[0], normal[1], normal[2], 0.0)
+            facing[s] = wp.vec4(normal[0], normal[1], normal[2], total[0])
 
     return extrapolate
 

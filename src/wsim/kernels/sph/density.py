@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from wsim.kernels.sph.grid import Grid
+from wsim.kernels.sph.grid import Grid, in_plane
 from wsim.kernels.sph.pair_sums import PairSums
 from wsim.kernels.sph.records import load_record
 from wsim.kernels.sph.species import BODIES, WALLS, Species, is_near
@@ -11,6 +11,14 @@ from wsim.kernels.sph.species import BODIES, WALLS, Species, is_near
 # drop of spray, and its density says nothing more. Without the bound a few drops that hold each other in orbit by
 # tension stretch without end. To forbid tension altogether is worse: it opens voids in the bulk that slam shut.
 LOWEST_DENSITY = wp.constant(0.9)
+# Where a void is beside it water tears before it pulls. What is left, in smoothing lengths of its own weight, is what
+# the pressure at a surface at rest swings by: cut to nothing it would carry a light body up by what is left of it.
+HELD_AT_SURFACE = wp.constant(4.0)
+# Of what is around a particle the share that is filled: at a level surface 0.6, one layer further down 0.9.
+OPEN = wp.constant(0.7)
+CLOSED = wp.constant(0.9)
+# Of what is around a particle in a gap the share of fluid from which on it needs none of what is handed on there.
+ALONE = wp.constant(0.25)
 # One body particle half a smoothing length inside the support, or several further out, and walls give nothing back.
 FADE = wp.constant(4.0)
 
@@ -26,6 +34,23 @@ class Method:
     artificial_viscosity: float  # alpha
     laminar_factor: float  # about 2 (d + 2) in d dimensions
     background_pressure: float  # [Pa]
+    vented: float  # at which pressure leaves what has a void beside it [1/s]; 0: only by its flow
+
+
+@wp.func
+def dimensions(grid: Grid) -> float:
+    """2 in a plane, else 3."""
+    return wp.where(in_plane(grid), 2.0, 3.0)
+
+
+@wp.func
+def _enclosed(grid: Grid, filled: float) -> float:
+    """1 of a particle with water or solids all around it, 0 of one with a void beside it.
+
+    -sum V_j (x_i - x_j).grad W, the divergence of the position, is the number of dimensions where the kernel is full
+    (Lee et al. 2008).
+    """
+    return wp.clamp((filled / dimensions(grid) - OPEN) / (CLOSED - OPEN), 0.0, 1.0)
 
 
 def make_continuity(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
@@ -46,6 +71,7 @@ def make_continuity(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         dt: float,
         # Data out:
         pressure: wp.array(dtype=float),
+        full: wp.array(dtype=float),
     ):
         """Advance the pressure of each fluid particle by dt, in sorted order.
 
@@ -58,7 +84,14 @@ def make_continuity(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
 
         The second sum is the density diffusion of Fourtakas et al. (2019, Computers & Fluids 190): the hydrostatic
         part rho^H_ij of the difference is left out of Molteni & Colagrossi's (2009) term, so that a tank at rest keeps
-        its pressure. It spans fluid alone, and so neither makes nor destroys volume in sum.
+        its pressure. It spans fluid alone, and so neither makes nor destroys volume in sum, but for single particles in
+        a gap of bodies, which take on the pressure there (`push.make_push`).
+
+        Where drops come from taps and meet again, each has the density of water, and continuity has them press on each
+        other as soon as they are within reach, with voids between them: the heap would stand up to twice as high as its
+        volume. Beside a void is the air, whose pressure is 0; `vented` is the rate at which it gets in.
+
+        `full` is how far each is from any void, in original order, for the next step's `boundary.compress`.
         """
         s = first + wp.tid()
         p = load_record(fluid.point, s)
@@ -70,23 +103,32 @@ def make_continuity(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         # p^H_j - p^H_i = rho_0 g.(x_j - x_i): the incompressible column, within the 1 % of compression.
         weight = rho0 * gravity[world]
         total = of_fluid(grid, fluid, fluid, s, world, method.shape, x, v, m[3], weight)
-        divergence, smoothing = total[0], total[1]
+        divergence, smoothing, filled = total[0], total[1], total[2]
         given_back = float(0.0)
         if wp.static(WALLS in solids):
             if is_near(grid, walls, world, x):
                 at_walls = of_walls(grid, fluid, walls, s, world, method.shape, x, v, m[3], weight)
                 divergence += at_walls[0]
+                filled += at_walls[2]
                 given_back = at_walls[1]
         if wp.static(BODIES in solids):
             if is_near(grid, bodies, world, x):
                 at_bodies = of_bodies(grid, fluid, bodies, s, world, method.shape, x, v, m[3], weight)
                 divergence += at_bodies[0]
+                filled += at_bodies[2]
+                smoothing += wp.max(1.0 - total[2] / (ALONE * dimensions(grid)), 0.0) * at_bodies[3]
                 # What walls give back fades as a body comes within reach: see `boundary.compress`.
                 given_back *= wp.max(1.0 - FADE * at_bodies[1], 0.0)
-        divergence += given_back / p[3]
+        enclosed = _enclosed(grid, filled)
+        full[fluid.order[s]] = enclosed
+        divergence += enclosed * given_back / p[3]
         c2 = method.speed_of_sound * method.speed_of_sound
         rate = (c2 * rho0 + m[3]) * divergence + 2.0 * method.diffusion * method.h * method.speed_of_sound * smoothing
-        pressure[s] = wp.max(m[3] + dt * rate, (LOWEST_DENSITY - 1.0) * rho0 * c2)
+        least = enclosed * (LOWEST_DENSITY - 1.0) * rho0 * c2 - HELD_AT_SURFACE * wp.length(weight) * method.h
+        now = wp.max(m[3] + dt * rate, least)
+        if now > 0.0:
+            now *= wp.exp(-dt * method.vented * (1.0 - enclosed))
+        pressure[s] = now
 
     return continuity
 

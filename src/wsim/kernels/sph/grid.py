@@ -11,6 +11,8 @@ in a batch, and its sums add up in the same order.
 
 import warp as wp
 
+PARKED = wp.constant(-1)  # stage of a particle that is not in its world (`openings`)
+
 
 @wp.struct
 class Grid:
@@ -84,15 +86,23 @@ def assign_cells(
     order: wp.array(dtype=int),
     position: wp.array(dtype=wp.vec3),
     particle_world: wp.array(dtype=int),
+    stage: wp.array(dtype=int),  # empty where none is ever parked
     # Data out:
     key: wp.array(dtype=int),
     value: wp.array(dtype=int),
     cell_count: wp.array(dtype=int),
 ):
-    """Cell of each particle, in the present order, and how many particles each cell has."""
+    """Cell of each particle, in the present order, and how many particles each cell has.
+
+    What is parked is in the last cell of its world, wherever it is: no other particle comes near that.
+    """
     k = wp.tid()
     i = order[first + k]
-    cell = grid_cell(grid, particle_world[i], position[i])
+    world = particle_world[i]
+    cell = grid_cell(grid, world, position[i])
+    if stage.shape[0] > 0:
+        if stage[i] == PARKED:
+            cell = (world + 1) * grid.count[0] * grid.count[1] * grid.count[2] - 1
     key[k] = cell
     value[k] = i
     wp.atomic_add(cell_count, cell, 1)
@@ -120,10 +130,12 @@ def gather_fluid(
     mass: wp.array(dtype=float),
     particle_world: wp.array(dtype=int),
     rest_density: wp.array(dtype=float),
+    full: wp.array(dtype=float),
     speed_of_sound: float,
     # Data out:
     point: wp.array(dtype=wp.vec4),
     motion: wp.array(dtype=wp.vec4),
+    sorted_full: wp.array(dtype=float),
 ):
     """Copy positions, volumes, velocities and pressures into sorted order."""
     s = wp.tid()
@@ -134,6 +146,7 @@ def gather_fluid(
     density = rest_density[particle_world[i]] + p / (speed_of_sound * speed_of_sound)
     point[s] = wp.vec4(x[0], x[1], x[2], mass[i] / density)
     motion[s] = wp.vec4(v[0], v[1], v[2], p)
+    sorted_full[s] = full[i]
 
 
 @wp.kernel(enable_backward=False)

@@ -15,14 +15,14 @@ from typing import Any
 
 import warp as wp
 
-from wsim.kernels.sph.gap_sums import ACROSS, BEYOND, GAP, GRADIENT, SEEPING, WAY, between
+from wsim.kernels.sph.gap_sums import ACROSS, BEHIND, BEYOND, GAP, GRADIENT, SEEPING, WAY, between
 from wsim.kernels.sph.grid import Grid
 from wsim.kernels.sph.rows import walk
 from wsim.kernels.sph.species import BODIES, DRY, FLUID, WALLS, Species
 
 BLOCK = 128  # threads of a CUDA block; 3 % quicker than 256 for sums over neighbours, on an H200
 
-# Sums of W, of W times pressure, and of V v.grad W.
+# Sums of W, of W times pressure, and of V v.grad W of what has no void beside it.
 Flux = wp.vec3
 
 # Force per volume (3), sum of V W, and the way out of the wall (3), up to a factor.
@@ -89,42 +89,51 @@ _OTHERS = {FLUID: "", WALLS: "+ counts[0]", BODIES: "+ counts[0] + counts[1]"}
 _CONTINUITY = (
     """
     const float v0 = v[0], v1 = v[1], v2 = v[2], w0 = common[0], w1 = common[1], w2 = common[2];
-    float divergence = 0.0f, smoothing = 0.0f;
+    float divergence = 0.0f, smoothing = 0.0f, filled = 0.0f;
     """,
     """
             const float slope = q.w * (t2 * t);
             divergence += slope * ((v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2);
             smoothing -= slope * (n.w - p + w0 * d0 + w1 * d1 + w2 * d2);
+            filled += slope * r2;
     """,
-    "return wp::vec_t<2, float>(slope_norm * divergence, slope_norm * smoothing);",
+    "return wp::vec_t<3, float>(slope_norm * divergence, slope_norm * smoothing, -slope_norm * filled);",
 )
 
 _CONTINUITY_AT_WALLS = (
     """
     const float v0 = v[0], v1 = v[1], v2 = v[2];
-    float divergence = 0.0f, given_back = 0.0f;
+    float divergence = 0.0f, given_back = 0.0f, filled = 0.0f;
     """,
     """
-            divergence += q.w * (t2 * t) * ((v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2);
+            const float slope = q.w * (t2 * t);
+            divergence += slope * ((v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2);
             given_back += t2 * t2 * (1.0f + 4.0f * u) * n.w;
+            filled += slope * r2;
     """,
-    "return wp::vec_t<2, float>(slope_norm * divergence, given_back);",
+    "return wp::vec_t<3, float>(slope_norm * divergence, given_back, -slope_norm * filled);",
 )
 
 _CONTINUITY_AT_BODIES = (
     """
-    const float v0 = v[0], v1 = v[1], v2 = v[2];
-    float divergence = 0.0f, presence = 0.0f;
+    const Record* __restrict__ handeds = reinterpret_cast<const Record*>(other.handed.data);
+    const float v0 = v[0], v1 = v[1], v2 = v[2], w0 = common[0], w1 = common[1], w2 = common[2];
+    float divergence = 0.0f, presence = 0.0f, filled = 0.0f, seeping = 0.0f;
     """,
     """
-            divergence += q.w * (t2 * t) * ((v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2);
+            const Record h = WSIM_LOAD(handeds, j);
+            const float slope = q.w * (t2 * t);
+            divergence += slope * ((v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2);
             presence += t;
+            filled += slope * r2;
+            seeping -= h.x > 0.5f * DRY_PRESSURE ? slope * (h.x - p + w0 * d0 + w1 * d1 + w2 * d2) : 0.0f;
     """,
-    "return wp::vec_t<2, float>(slope_norm * divergence, presence);",
+    "return wp::vec_t<4, float>(slope_norm * divergence, presence, -slope_norm * filled, slope_norm * seeping);",
 )
 
 _FLUX = (
     """
+    const float* __restrict__ fulls = other.full.data;
     const float w0 = common[0], w1 = common[1], w2 = common[2];
     float total = 0.0f, pressure = 0.0f, flux = 0.0f;
     """,
@@ -132,7 +141,7 @@ _FLUX = (
             const float w = t2 * t2 * (1.0f + 4.0f * u);
             total += w;
             pressure += w * (n.w + w0 * d0 + w1 * d1 + w2 * d2);
-            flux -= q.w * (t2 * t) * (n.x * d0 + n.y * d1 + n.z * d2);
+            flux -= fulls[j] * q.w * (t2 * t) * (n.x * d0 + n.y * d1 + n.z * d2);
     """,
     "return wp::vec_t<3, float>(total, pressure, slope_norm * flux);",
 )
@@ -225,9 +234,11 @@ class PairSums:
     """The native loops of one way of searching. W stands for W up to a factor; v_ij is v_i - v_j.
 
     Attributes:
-        continuity: Over fluid: sums of V_j v_ij.grad W and of the density diffusion.
-        continuity_at_walls: Over walls: sums of V_j v_ij.grad W and of W times what a wall gives back.
-        continuity_at_bodies: Over bodies: sums of V_j v_ij.grad W and of 1 - r / 2h.
+        continuity: Over fluid: sums of V_j v_ij.grad W, of the density diffusion, and of -V_j x_ij.grad W.
+        continuity_at_walls: Over walls: sums of V_j v_ij.grad W, of W times what a wall gives back, and of
+            -V_j x_ij.grad W.
+        continuity_at_bodies: Over bodies: sums of V_j v_ij.grad W, of 1 - r / 2h, of -V_j x_ij.grad W, and of the
+            density diffusion over those that hand on a pressure in a gap.
         flux: `Flux`, over fluid around what stands still.
         extrapolation: `Extrapolated`, over fluid.
         force: Force on a particle per volume, over fluid or bodies.
@@ -289,7 +300,7 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool,
         )
         loop = loop.replace("UNROLL", "2" if branch else "1")
         loop = loop.replace("IMAGES", _images(periodic)).replace("TERM", term.replace("DRY_PRESSURE", f"{DRY:e}f"))
-        loop = loop.replace("BEYOND", f"{BEYOND:e}f")
+        loop = loop.replace("BEYOND", f"{BEYOND:e}f").replace("BEHIND", f"{BEHIND:e}f")
         listed = _LISTED.replace("OTHERS", _OTHERS[kind]).replace("KIND", str(kind)).replace("LOOP", loop)
         search = listed if lists else walk(loop, reach, periodic)
         return _SUM.replace("SEARCH", search).replace("BEFORE", before).replace("AFTER", after)
@@ -319,9 +330,9 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool,
     options: dict[str, Any] = {"enable_backward": False, "grid_stride": False, "module": "unique"}
     options |= {"module_options": {"fast_math": True}} | ({"launch_bounds": (BLOCK, 12)} if branch else {})
     return PairSums(
-        continuity=total(_CONTINUITY, wp.vec2),
-        continuity_at_walls=total(_CONTINUITY_AT_WALLS, wp.vec2, WALLS),
-        continuity_at_bodies=total(_CONTINUITY_AT_BODIES, wp.vec2, BODIES),
+        continuity=total(_CONTINUITY, wp.vec3),
+        continuity_at_walls=total(_CONTINUITY_AT_WALLS, wp.vec3, WALLS),
+        continuity_at_bodies=total(_CONTINUITY_AT_BODIES, wp.vec4, BODIES),
         flux=total(_FLUX, Flux),
         extrapolation=total(_EXTRAPOLATION, Extrapolated),
         force={kind: total(_MOMENTUM, wp.vec3, kind) for kind in (FLUID, BODIES)},

@@ -2,6 +2,8 @@
 
 import warp as wp
 
+from wsim.kernels.sph.openings import ACTIVE
+
 BITS = 15  # of a tile's number along each axis; the world's come above
 HALF = wp.constant(1 << (BITS - 1))
 SPAN = wp.constant(1 << BITS)
@@ -45,6 +47,7 @@ def _in_hollow(
 def find_strays(
     # Data in:
     particle_world: wp.array(dtype=int),
+    flags: wp.array(dtype=int),
     position: wp.array(dtype=wp.vec3),
     velocity: wp.array(dtype=wp.vec3),
     gravity: wp.array(dtype=wp.vec3),  # of each world [m/s^2]
@@ -63,7 +66,8 @@ def find_strays(
 ):
     """Mark the particles whose way of the next seconds leads out of what is home: tiles, and hollows of tanks.
 
-    Gravity alone bends it. What is far from all that stands still is home, too, and what is not finite is nowhere.
+    Gravity alone bends it. What waits for a tap goes nowhere. What is far from all that stands still is home, too, and
+    what is not finite is nowhere.
     """
     i = wp.tid()
     world = particle_world[i]
@@ -71,7 +75,7 @@ def find_strays(
     v = velocity[i]
     fall = 0.5 * seconds * seconds * gravity[world]
     stray[i] = wp.uint8(0)
-    if not wp.isfinite(wp.dot(x, x) + wp.dot(v, v)):
+    if (flags[i] & ACTIVE) == 0 or not wp.isfinite(wp.dot(x, x) + wp.dot(v, v)):
         return
     hops = int(wp.clamp(wp.ceil((seconds * wp.length(v) + wp.length(fall)) / guard), 1.0, float(MOST_HOPS)))
     for hop in range(hops + 1):

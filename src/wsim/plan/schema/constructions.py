@@ -48,7 +48,8 @@ class Material(Sparse):
     restitution: Share = 0.0  # 0 leaves it to what it touches; a contact's 0 is 0
     rolling: Share | None = None  # rolling resistance: a torque, of radius times push
     color: Color = (0.7, 0.7, 0.7)
-    opacity: Share = 1.0
+    opacity: Share = 1.0  # of a solid
+    attenuation_length: NotNegative | None = None  # of a liquid [m]: how clear it is; 0 hides what is in it
 
 
 class Proxy(Strict):

@@ -42,6 +42,8 @@ def arguments(draft: Draft, item: PlanObject) -> list[str]:
         found.append(f"density={number(item.density)}")
     if item.material is not None:
         found.append(f"color={tuple_of(item.material.color)}")
+        if item.material.attenuation_length is not None:
+            found.append(f"attenuation_length={number(item.material.attenuation_length)}")
     return found
 
 
