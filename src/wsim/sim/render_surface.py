@@ -9,6 +9,7 @@ import warp as wp
 from newton.geometry import ParticleSurface
 
 from wsim.kernels.render import surface as kernels
+from wsim.sim.render_drops import Drops, Mesh
 from wsim.sim.render_fill import SolidFill
 
 if TYPE_CHECKING:
@@ -48,10 +49,10 @@ class FluidSurface:
         )
         self._positions = wp.empty(0, dtype=wp.vec3f, device=device)
         self._flags = wp.empty(0, dtype=wp.int32, device=device)
-        self._radii = wp.empty(0, dtype=wp.float32, device=device)
+        self._drops = Drops(fluid.spacing, device)
 
-    def extract(self, positions: Any) -> tuple[wp.array, wp.array, wp.array] | None:
-        """Vertices, triangle indices and vertex normals of the surface; None where there is none.
+    def extract(self, positions: Any) -> Mesh | None:
+        """Vertices, triangle indices and vertex normals of the surface and of single drops; None where there is none.
 
         Args:
             positions: Particle centres [m], (N, 3), a Warp array of vec3 or an array of numbers.
@@ -64,7 +65,6 @@ class FluidSurface:
         if self._positions.shape[0] != total:
             self._positions = wp.empty(total, dtype=wp.vec3f, device=self._device)
             self._flags = wp.empty(total, dtype=wp.int32, device=self._device)
-            self._radii = wp.full(total, 0.5 * self.fluid.spacing, dtype=wp.float32, device=self._device)
         wp.launch(
             kernels.keep_finite,
             dim=count,
@@ -73,12 +73,13 @@ class FluidSurface:
             device=self._device,
         )
         self._fill.write(self._positions, self._flags, count, FARTHEST)
-        mesh = self._extractor.extract(self._positions, self._radii, particle_flags=self._flags)
+        self._drops.part(self._positions, self._flags, count)
+        mesh = self._extractor.extract(self._positions, self._drops.radii, particle_flags=self._drops.flags)
         vertices, indices, normals = mesh.to_arrays()
         if vertices is None or indices is None or normals is None:
-            return None
+            return self._drops.joined(None)
         self._fit(vertices)
-        return vertices, indices, normals
+        return self._drops.joined((vertices, indices, normals))
 
     def _fit(self, vertices: wp.array) -> None:
         box = self._container
@@ -123,6 +124,10 @@ class FluidMesh:
     def points(self) -> np.ndarray:
         """The mesh's vertices [m], (V, 3)."""
         return self._mesh.points.numpy() if self._mesh is not None else np.zeros((0, 3), dtype=np.float32)
+
+    def triangles(self) -> np.ndarray:
+        """The vertices' indices of each triangle, (T, 3)."""
+        return self._mesh.indices.numpy().reshape(-1, 3) if self._mesh is not None else np.zeros((0, 3), dtype=np.int32)
 
     def update(self, fluids: Mapping[str, Any]) -> None:
         """Rebuild from particle positions by fluid prim; KeyError naming the known fluids.
