@@ -67,14 +67,16 @@ class CheckPoured(Check):
         come = _at(evidence, time, "fluid/mass_in")
         asked = np.array([fluid.density * sum(tap.poured(float(t)) for tap in world.taps) for t in time])
         k = int(np.argmax(np.abs(come - asked)))
-        layer = sum(max(1.0, tap.area / fluid.spacing**2) + 1.0 for tap in world.taps) * particle_mass(fluid)
+        # Drops of rain come one by one.
+        cells = [0.0 if tap.drop_speed else tap.area / fluid.spacing**2 for tap in world.taps]
+        layer = sum(each + 1.0 for each in cells) * particle_mass(fluid)
         prim = world.taps[0].prim
         return [
             self.measured(
                 f"{prim}: {come[k]:.4g} kg came out by {time[k]:.3f} s, where the rates give {asked[k]:.4g} kg",
                 float(abs(come[k] - asked[k])), self.layers * layer, "kg", prim=prim, time=float(time[k]), expected=0.0,
                 fine=f"{prim}: {come[-1]:.4g} kg came out by the end; the rates give {asked[-1]:.4g} kg",
-                limit_from=f"{self.layers:g} layer of particles over each mouth",
+                limit_from=f"{self.layers:g} layer of particles over each mouth, or one drop",
                 target=RepairTarget(
                     kind="program", prim=prim, parameter="rate", direction="change", why="it does not keep to its rate"
                 ),

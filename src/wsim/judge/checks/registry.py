@@ -33,6 +33,7 @@ from wsim.judge.checks import (
     plan_joints,
     plan_land,
     plan_motion,
+    plan_openings,
     plan_vehicles,
     recorded,
     recorded_state,
@@ -53,7 +54,7 @@ RUN = (run,)
 PHYSICS = (
     physics, settled, stated, scheduled, continuity, motion, forces, recorded, recorded_state, recorded_ties, impacts,
     rolling, catches, energy, contact, rest, joint, cord, mass, plan, plan_closed, plan_joints, plan_cords,
-    plan_contacts, plan_motion, plan_vehicles, plan_land,
+    plan_contacts, plan_motion, plan_openings, plan_vehicles, plan_land,
     fluid, openings, fluid_books, fluid_push, lift, fluid_height, water, camera,
 )  # fmt: skip
 

@@ -10,6 +10,7 @@ from wsim.plan.schema.clauses import clause_problems
 from wsim.plan.schema.cord_problems import cord_problems
 from wsim.plan.schema.draft import KindOfTwo
 from wsim.plan.schema.land import land_problems
+from wsim.plan.schema.opening_problems import opening_problems
 from wsim.plan.schema.schedule_problems import schedule_problems
 from wsim.plan.schema.supports import support_problems
 
@@ -36,6 +37,7 @@ def problems(plan: Draft) -> list[str]:
         *_actuation(plan),
         *_by_time(plan),
         *schedule_problems(plan),
+        *opening_problems(plan),
         *land_problems(plan),
         *_others(plan),
         *clause_problems(plan),
@@ -75,6 +77,7 @@ def _names(plan: Draft) -> Iterator[str]:
         "joints": [joint.name for joint in plan.joints],
         "cords": [cord.name for cord in plan.cords],
         "schedules": [schedule.name for schedule in plan.schedules],
+        "openings": [opening.name for opening in plan.openings],
     }
     taken: dict[str, str] = {}
     for kind, names in named.items():
