@@ -278,6 +278,10 @@ MISTAKES = {
         lambda d: of(d, "ground").update(velocity=[1, 0, 0]),
         ["velocity: [1.0, 0.0, 0.0] of ground, which is static and never moves; remove it"],
     ),
+    "a fluid that spins": (
+        lambda d: of(d, "water").update(velocity=[1, 0, 0], angular_velocity_deg=[0, 0, 90]),
+        ["angular_velocity_deg: [0.0, 0.0, 90.0] of water, which is a fluid, and starts without a spin; remove it"],
+    ),
     "limits of a fixed joint": (
         lambda d: d.update(joints=[joint(kind="fixed", limits=[0, 1])]),
         ["joints.0.limits: a fixed joint has none"],

@@ -4,9 +4,10 @@ import pytest
 
 from tests.plan.layout.scenes import asset, at, box, rel, solve, tank, water, yaw
 from wsim.plan.layout import LayoutError, extents, residual, unsatisfied
-from wsim.plan.schema import TEMPLATES, Pose, Relation
+from wsim.plan.schema import TEMPLATES, PlanObject, Pose, Relation
 from wsim.plan.schema.predicates import CLEARANCE
-from wsim.plan.templates import expand_row
+from wsim.plan.templates import expand_row, is_block
+from wsim.program.compose import compose
 
 A = box("a", pose=Pose(position=(1.0, 2.0, 0.05)))  # 0.2 x 0.4 x 0.1 m
 SMALL = (0.1, 0.2, 0.04)
@@ -135,3 +136,20 @@ def test_flush_with_platform_top():
     placed = solve(A, step)
     b = placed.object("b")
     assert at(placed, "b")[2] + extents(b)[2] / 2 == pytest.approx(0.1)
+
+
+def test_a_block_as_high_as_its_level_stays_a_block():
+    """It stands on the tank's floor, beside what is empty; a filling needs no size, and another height is no level."""
+    held = tank()
+    wide, deep, _ = held.size
+    rows = [rel("PLACE-IN", "tank"), rel("FREE-SURFACE-AT", value=0.3)]
+
+    def sized(*size: float) -> PlanObject:
+        return PlanObject.proxy(name="water", role="fluid", primitive="fluid", size=size, state="fluid", relations=rows)
+
+    for size, block in (((0.2, deep, 0.3), True), ((wide, deep, 0.3), False), ((0.2, deep, 0.2), False), ((), False)):
+        assert is_block(sized(*size), {"tank": held}) == block
+    placed = solve(held, sized(0.2, deep, 0.3))
+    assert at(placed, "water") == pytest.approx((*at(placed, "tank")[:2], 0.02 + 0.15))
+    program = compose(placed)
+    assert f"size=(0.2, {deep}, 0.3)" in program and "fills=" not in program

@@ -174,6 +174,7 @@ def _solids() -> list[PlanObject]:
             size=(0.2, 0.2, 0.2),
             state="fluid",
             pose=Pose(position=(8.0, 0.0, 0.5)),
+            velocity=(1.0, 0.0, -0.5),
             material=Material(name="oil", density=900.0),
         ),
         *(
@@ -214,7 +215,7 @@ def test_what_it_builds_is_what_was_planned(tmp_path: Path) -> None:
         assert body.shapes[0].color == pytest.approx(item.material.color)
         assert body.velocity == pytest.approx(item.velocity)
     assert {static.prim for static in world.statics} == {"/World/ground", "/World/step"}
-    assert world.fluids[0].density == 900.0
+    assert (world.fluids[0].density, world.fluids[0].velocity) == (900.0, (1.0, 0.0, -0.5))
     assert (world.duration, world.frame_rate) == (2.5, 60.0)
     assert [parameter.default for parameter in world.parameters] == [7850.0, 600.0, 600.0]
 

@@ -65,6 +65,8 @@ KINDS: dict[str, tuple[object, ...]] = {
     "span": ("wide", 1.0, None, (1.0,), (-1.0, 0.0, 1.0), (NAN, 1.0), (-1.0, INF), (1.0, -1.0), {-1, 1}, (-1, "1")),
     "material": ("wod", "ball", "", 7, NAN, True, [], GONE, object()),
     "tank": (*OBJECT, "ball"),
+    "fluid": (*OBJECT, None, "ball", "tank"),
+    "two lengths": ("wide", 1.0, (1.0,), (1.0, 1.0, 1.0), (NAN, 1.0), (1.0, 0.0), (-1.0, 1.0), {1.0, 2.0}, (1.0, "1")),
     "range": (
         (0.0, 0.0),
         "wide", 1.0, (1.0,), (-1.0, 0.0, 1.0), (NAN, 1.0), (-1.0, INF), (1.0, -1.0), (0.5, 1.0), {-1, 1}, (-1, "1"),
@@ -300,9 +302,25 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
     "fluid": (
         {"name": "new", "spacing": 0.1, "size": (0.4, 0.4, 0.4), "position": (0.0, 0.0, 9.0)},
         {
-            "name": "new name", "spacing": "number > 0", "fills": "tank", "level": "number > 0", "size": "sizes",
-            "position": "three numbers", "container": "tank", "density": "number > 0", "viscosity": "number >= 0",
-            "speed_of_sound": "number >= 0", "color": "colour", "attenuation_length": "number >= 0",
+            "name": "new name", "spacing": "number > 0", "fills": "tank", "level": "number >= 0", "size": "sizes",
+            "position": "three numbers", "container": "tank", "velocity": "three numbers", "density": "number > 0",
+            "viscosity": "number >= 0", "speed_of_sound": "number >= 0", "color": "colour",
+            "attenuation_length": "number >= 0",
+        },
+    ),
+    "tap": (
+        {"name": "new", "fluid": "water", "rate": 0.001, "position": (0.0, 0.0, 9.0), "radius": 0.2},
+        {
+            "name": "new name", "fluid": "fluid", "rate": "number > 0", "position": "three numbers",
+            "direction": "direction", "radius": "number > 0", "size": "two lengths", "start": "number >= 0",
+            "stop": "number > 0", "speed": "number >= 0",
+        },
+    ),
+    "drain": (
+        {"name": "new", "fluid": "water", "position": (0.0, 0.0, 9.0), "radius": 0.4},
+        {
+            "name": "new name", "fluid": "fluid", "position": "three numbers", "direction": "direction",
+            "radius": "number > 0", "size": "two lengths", "falls": "flag",
         },
     ),
     "material": (
@@ -458,6 +476,7 @@ def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Scene:
     scene.joint_prismatic("slide", None, "cart")
     scene.joint_fixed("weld", None, "stuck")
     scene.tank("tank", inner_size=(1, 1, 1), position=(9.0, 0.0, 0.0))
+    scene.fluid("water", fills="tank", level=0.5, spacing=0.1)
     scene.camera("cam", eye=(0, -3, 1), target=(0, 0, 0))
     monkeypatch.setenv(VARIABLE, str(tmp_path / "own"))
     spec = {"joints": ["pan"], "rate": 50.0, "observations": [{"of": "command"}]}

@@ -71,6 +71,7 @@ def test_container_and_fluid_come_back(world: World) -> None:
     assert water.size == pytest.approx((1.0, 0.6, 0.3))
     assert water.center == pytest.approx((0.0, 2.0, 0.18))
     assert (water.density, water.viscosity, water.spacing, water.speed_of_sound) == (1000.0, 0.001, 0.05, 0.0)
+    assert water.velocity == (0.0, 0.0, 0.0)
     assert water.container == tank.prim == "/World/tank"
     assert water.color == pytest.approx((0.15, 0.4, 0.6))
     assert water.attenuation_length is None

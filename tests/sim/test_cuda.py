@@ -45,6 +45,26 @@ def afloat(scene):
     scene.camera("side", eye=(0.0, -1.4, 0.6), target=(0.0, 0.0, 0.2), width=320, height=180)
 
 
+def test_ground_is_laid_between_graphs(tmp_path):
+    """Water runs off a shelf: each graph that meets new ground is captured anew, and goes on as steps do."""
+
+    def shelf(scene):
+        scene.ground()
+        scene.box("shelf", size=(0.5, 0.5, 0.2), position=(0.0, 0.0, 0.4), static=True)
+        scene.fluid("water", size=(0.3,) * 3, position=(0.0, 0.0, 0.65), spacing=0.05, velocity=(2.0, 0.0, 0.0))
+
+    stage = stage_of(tmp_path, shelf)
+    graph, steps = Simulation(stage, device=GPU), Simulation(stage, device=GPU)
+    laid = graph.fluid.wall_count
+    for _ in range(20):
+        graph.advance_frame()
+        for _ in range(steps.substeps):
+            steps.step()
+    assert graph.fluid.wall_count == steps.fluid.wall_count > laid
+    assert graph.state.particle_q.numpy() == pytest.approx(steps.state.particle_q.numpy(), abs=1e-3)
+    assert graph.state.particle_q.numpy()[:, 2].min() > -1e-6
+
+
 @pytest.mark.parametrize("build", [slider, arm, afloat])
 def test_a_frame_in_one_graph_is_its_steps(tmp_path, build):
     stage = stage_of(tmp_path, build)

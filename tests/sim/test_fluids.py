@@ -11,6 +11,7 @@ from wsim.scene.describe import describe
 from wsim.scene.world import Body, Fluid, Shape, World
 from wsim.sim.fluids import expected_speed
 from wsim.sim.model import build_model
+from wsim.sim.simulation import Simulation
 
 SPACING = 0.025
 CLEAR = 0.4 * SPACING  # [m], that fluid keeps from a body
@@ -85,3 +86,26 @@ def test_a_lying_can_falls_from_its_lower_side() -> None:
         prim="/World/water", density=1000.0, viscosity=1e-3, spacing=0.05, size=(1.0, 1.0, 0.5), center=(0, 0, 0.25)
     )
     assert expected_speed(World(bodies=[can], fluids=[water])) == pytest.approx(math.sqrt(2 * 9.81 * (3.0 - 0.5)))
+
+
+def test_thrown_water_flies_on(tmp_path) -> None:
+    """Nothing but gravity acts on a block as a whole: its centre goes by v t and g t (t + dt) / 2, in one world as in
+    worlds that differ by the throw."""
+    stages = []
+    for k, velocity in enumerate([(1.0, 0.0, 0.0), (0.0, -1.0, 2.0)]):
+        scene = Scene()
+        scene.fluid("water", size=(0.2, 0.2, 0.2), position=(0.0, 0.0, 1.0), spacing=SPACING, velocity=velocity)
+        scene.save(tmp_path / f"{k}.usda")
+        stages.append((tmp_path / f"{k}.usda", velocity))
+    worlds = [describe(stage) for stage, _ in stages]
+    assert [world.fluids[0].velocity for world in worlds] == [velocity for _, velocity in stages]
+    for flying in (stages[:1], stages):
+        simulation = Simulation([stage for stage, _ in flying], "cpu")
+        start = simulation.state.particle_q.numpy().reshape(len(flying), -1, 3).mean(axis=1)
+        for _ in range(6):
+            simulation.advance_frame()
+        at = simulation.state.particle_q.numpy().reshape(len(flying), -1, 3).mean(axis=1)
+        flown, thrown = simulation.time, [velocity for _, velocity in flying]
+        assert flown == pytest.approx(0.2)
+        fallen = 0.5 * 9.81 * flown * (flown + simulation.dt)
+        assert at - start == pytest.approx(flown * np.array(thrown) - [0.0, 0.0, fallen], abs=1e-4)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from wsim.geometry.filled import box_lattice
-from wsim.solvers.sampling import container_walls, plane_patch
+from wsim.solvers.sampling import container_walls
 
 
 def test_a_boxs_lattice_has_its_volume():
@@ -45,9 +45,3 @@ def test_a_plane_has_one_layer_that_stands_for_the_depth():
     box = box_lattice(np.array([0.2, 1.0, 0.1]), 0.05, plane=True)
     assert (box.position[:, 1] == 0.0).all()
     assert box.volume.sum() == pytest.approx(0.02)
-
-
-def test_plane_patch_is_below_the_plane():
-    patch = plane_patch(np.array([-0.2, -0.1]), np.array([0.2, 0.3]), 0.05, support=0.13)
-    assert patch.position[:, 2].max() == pytest.approx(-0.025)
-    assert len(patch.position) == 8 * 8 * 2

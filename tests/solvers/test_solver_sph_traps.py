@@ -10,7 +10,7 @@ import warp as wp
 from wsim.geometry.filled import box_lattice
 from wsim.scene import Scene
 from wsim.scene.describe import describe
-from wsim.sim.fluids import seed
+from wsim.sim.fluids import seed, sph_config
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
 
@@ -130,4 +130,6 @@ def test_the_waters_mass_is_its_volume():
     tank = scene.tank("tank", inner_size=(0.5, 0.4, 0.3))
     scene.fluid("water", fills=tank, level=0.2, spacing=0.03)
     world = describe(scene.stage)
-    assert seed(world.fluids[0], world, {}).mass.sum() == pytest.approx(1000.0 * 0.5 * 0.4 * 0.2, rel=1e-6)
+    assert seed(world.fluids[0], world, sph_config([world]), {}).mass.sum() == pytest.approx(
+        1000.0 * 0.5 * 0.4 * 0.2, rel=1e-6
+    )

@@ -57,6 +57,7 @@ def _request(plan: Plan, answer: dict[str, Any], lacks: str) -> str:
                   for number, each in enumerate(plan.objectives)]  # fmt: skip
     things: dict[str, Sequence[Any]] = {
         "objects": plan.objects, "joints": plan.joints, "cords": plan.cords, "schedules": plan.schedules,
+        "openings": plan.openings,
         "cameras": plan.cameras,
     }  # fmt: skip
     named = [f"{kind}: {', '.join(each.name for each in found)}" for kind, found in things.items() if found]

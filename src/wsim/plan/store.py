@@ -13,7 +13,7 @@ from wsim.plan.layout import LayoutError, layout
 from wsim.plan.layout.land import set_down
 from wsim.plan.schema import PLAN_VERSION, Plan, PlanObject, explain
 from wsim.plan.schema.objects import SPREAD
-from wsim.plan.templates import write_out_fluids
+from wsim.plan.templates import write_out_blocks, write_out_fluids
 from wsim.plan.views import resolve_all
 
 LARGEST = 20_000_000  # bytes of a plan's file: a plan of ten thousand objects has about ten million
@@ -42,6 +42,7 @@ def made(data: Any, where: Path) -> Plan:
 
 def _placed(plan: Plan, path: Path) -> Plan:
     try:
+        plan = write_out_blocks(plan)
         if all(item.pose is not None or _needs_none(item) for item in plan.objects):
             return resolve_all(set_down(write_out_fluids(plan)), keep=True)
         return layout(plan)

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from wsim.scene.world import Camera, Fluid, World
 
     Floats = NDArray[np.float32]
+    Particles = tuple[Floats, Floats, Floats, NDArray[np.int32] | None]
 
 CHUNK_BYTES = 4 * 1024 * 1024  # of particles or bodies that wait in memory
 CHUNK_ROWS = 256
@@ -136,16 +137,21 @@ class FluidBuffer:
         self._stream = stream
         self._prim = fluid.prim
         self._count: int | None = None
+        self._comes = False  # and goes: of some frames some particles are not in the world
         # Falling from the fluid's own height is fast: particles are drawn from its colour to foam over that range.
         gravity = float(np.linalg.norm(world.gravity))
         self._fast = max(float(np.sqrt(2.0 * gravity * fluid.size[2])), 0.1)
         self._palette = _palette(fluid.color)
         self._times: list[int] = []
-        self._rows: list[tuple[Floats, Floats, Floats]] = []
+        self._rows: list[Particles] = []
         self._bytes = 0
 
-    def check(self, frame: FluidFrame) -> tuple[Floats, Floats, Floats]:
-        """Copies of a frame's arrays; ValueError when they do not fit together or their count changed."""
+    def check(self, frame: FluidFrame) -> Particles:
+        """Copies of a frame's arrays, and the numbers of its particles if some are not in the world.
+
+        Raises:
+            ValueError: If they do not fit together, their count changed, or some may be gone in some frames alone.
+        """
         position = np.array(frame.position, dtype=np.float32)
         velocity = np.array(frame.velocity, dtype=np.float32)
         density = np.array(frame.density, dtype=np.float32)
@@ -162,14 +168,19 @@ class FluidBuffer:
                 f"frame: fluid {self._prim} has {count} particles, {self._count} before: "
                 "their number must not change; park lost ones outside the scene"
             )
-        return position, velocity, density
+        if self._count is not None and self._comes != (frame.present is not None):
+            raise ValueError(f"frame: fluid {self._prim}: `present` must be given in all frames, or in none")
+        if frame.present is None:
+            return position, velocity, density, None
+        there = np.flatnonzero(frame.present)
+        return position[there], velocity[there], density[there], there.astype(np.int32)
 
-    def add(self, ns: int, position: Floats, velocity: Floats, density: Floats) -> None:
+    def add(self, ns: int, frame: FluidFrame, checked: Particles) -> None:
         """Keep one frame of checked arrays."""
-        self._count = len(density)
+        self._count, self._comes = len(frame.density), frame.present is not None
         self._times.append(ns)
-        self._rows.append((position, velocity, density))
-        self._bytes += position.nbytes + velocity.nbytes + density.nbytes
+        self._rows.append(checked)
+        self._bytes += sum(each.nbytes for each in checked if each is not None)
         if len(self._times) >= CHUNK_ROWS or self._bytes >= CHUNK_BYTES:
             self.flush()
 
@@ -177,13 +188,16 @@ class FluidBuffer:
         """Write the frames that wait."""
         if not self._times:
             return
-        position, velocity, density = (np.concatenate(arrays) for arrays in zip(*self._rows, strict=True))
-        lengths = [self._count or 0] * len(self._times)
+        position, velocity, density = (np.concatenate([row[k] for row in self._rows]) for k in range(3))
+        lengths = [len(row[2]) for row in self._rows]
         points = rr.Points3D.columns(positions=position, colors=self._colors(velocity)).partition(lengths)
         own = [
             names.column(names.PARTICLE_VELOCITY, velocity, lengths),
             names.column(names.PARTICLE_DENSITY, density, lengths),
         ]
+        if self._comes:
+            numbers = np.concatenate([row[3] for row in self._rows if row[3] is not None])
+            own.append(names.column(names.PARTICLE_NUMBER, numbers, lengths))
         index = names.time_column(self._times)
         self._stream.send_columns(names.entity_path(self._prim), [index], [*points, *own], strict=True)
         self._times, self._rows, self._bytes = [], [], 0

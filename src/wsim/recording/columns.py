@@ -54,6 +54,7 @@ SEEN = "wsim.Camera:seen"
 SEEN_OBJECTS = "wsim.Camera:objects"
 PARTICLE_VELOCITY = "wsim.Fluid:velocity"
 PARTICLE_DENSITY = "wsim.Fluid:density"
+PARTICLE_NUMBER = "wsim.Fluid:number"
 SOLID_PARTICLES = "wsim.Solid:particles"  # x, y, z, V
 LOG_INDEX = "wsim.Log:index"
 LOG_PRIM = "wsim.Log:prim"

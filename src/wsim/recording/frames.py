@@ -14,8 +14,9 @@ if TYPE_CHECKING:
     from wsim.recording.ties import Ties
 
     Floats = NDArray[np.float32]
+    Bools = NDArray[np.bool_]
 else:
-    Floats = object
+    Floats = Bools = object
 
 
 @dataclass
@@ -25,6 +26,7 @@ class FluidFrame:
     position: Floats  # (N, 3) [m], world
     velocity: Floats  # (N, 3) [m/s]
     density: Floats  # (N,) [kg/m^3]
+    present: Bools | None = None  # (N,) which are in the world: not those that wait for a tap, or have drained away
 
 
 @dataclass

@@ -159,11 +159,32 @@ def _fluids(table: Table, world: World, clock: Clock) -> dict[str, FluidTrack]:
     tracks = {}
     for fluid in world.fluids:
         entity = names.entity_path(fluid.prim)
+        if entity in table.entities(names.PARTICLE_NUMBER):
+            tracks[fluid.prim] = _coming_and_going(table, entity, clock)
+            continue
         ns, position = table.get(entity, names.POSITIONS, (3,), np.float32, ragged=True)
         _, velocity = table.get(entity, names.PARTICLE_VELOCITY, (3,), np.float32, ragged=True)
         _, density = table.get(entity, names.PARTICLE_DENSITY, (), np.float32, ragged=True)
         tracks[fluid.prim] = FluidTrack(clock.seconds(ns), position, velocity, density)
     return tracks
+
+
+def _coming_and_going(table: Table, entity: str, clock: Clock) -> FluidTrack:
+    """A fluid's of which each frame has the particles that are in the world then, by number."""
+    ns, numbers = table.cells(entity, names.PARTICLE_NUMBER)
+    rows = [np.asarray(each) for each in numbers]
+    shape = len(rows), max((int(row.max()) + 1 for row in rows if len(row)), default=0)
+    present = np.zeros(shape, dtype=bool)
+    for k, row in enumerate(rows):
+        present[k, row] = True
+    found = []
+    for name, width in ((names.POSITIONS, (3,)), (names.PARTICLE_VELOCITY, (3,)), (names.PARTICLE_DENSITY, ())):
+        values = np.full((*shape, *width), np.nan, dtype=np.float32)
+        for k, cell in enumerate(table.cells(entity, name)[1]):
+            flat = cell.flatten() if width else cell
+            values[k, rows[k]] = flat.to_numpy(zero_copy_only=False).reshape(-1, *width)
+        found.append(values)
+    return FluidTrack(clock.seconds(ns), found[0], found[1], found[2], present)
 
 
 def _scalars(table: Table, clock: Clock) -> dict[str, Times]:

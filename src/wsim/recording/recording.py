@@ -21,18 +21,72 @@ from wsim.scene.world import Camera, World
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    Bools = NDArray[np.bool_]
     Floats = NDArray[np.float32]
     Times = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class FluidTrack:
-    """One fluid through time; its frames may be fewer than the recording's."""
+    """One fluid through time; its frames may be fewer than the recording's.
+
+    Where a particle is not in the world, as taps and drains may have it, all three are NaN.
+    """
 
     time: Times  # (T,) [s]
     position: Floats  # (T, N, 3) [m]
     velocity: Floats  # (T, N, 3) [m/s]
     density: Floats  # (T, N) [kg/m^3]
+    present: Bools | None = None  # (T, N) which are in the world; None: all, always
+
+    @property
+    def count(self) -> NDArray[np.intp]:
+        """Particles in the world at each frame, (T,)."""
+        if self.present is None:
+            return np.full(len(self.time), self.position.shape[1])
+        count: NDArray[np.intp] = self.present.sum(axis=1)
+        return count
+
+    def there(self, k: int) -> slice | NDArray[np.intp]:
+        """Which particles are in the world at frame k, as an index."""
+        return slice(None) if self.present is None else np.flatnonzero(self.present[k])
+
+    def percentile(self, of: NDArray[Any], share: float) -> Times:
+        """What a share of the particles in the world keep to at each frame, of what each has, (T, N); 0 where none is.
+
+        Not interpolated: it is one of them.
+        """
+        ranks = np.minimum(np.maximum(self.count - 1, 0), (share * self.count).astype(int))
+        if self.present is None and len(ranks):
+            found: Times = np.partition(of, ranks[0], axis=1)[:, ranks[0]]
+            return found
+        rows = (row[self.there(k)] for k, row in enumerate(of))
+        return np.array([np.partition(row, r)[r] if len(row) else 0.0 for row, r in zip(rows, ranks, strict=True)])
+
+    def mean(self, of: NDArray[Any]) -> Times:
+        """The mean over the particles in the world at each frame of what each has, (T, N, ...); 0 where none is."""
+        if self.present is None:
+            mean: Times = of.astype(np.float64).mean(axis=1)
+            return mean
+        own = self.present.reshape(*self.present.shape, *(1,) * (of.ndim - 2))
+        total = np.where(own, of, 0.0).sum(axis=1, dtype=np.float64)
+        share: Times = total / np.maximum(self.count, 1).reshape(-1, *(1,) * (of.ndim - 2))
+        return share
+
+
+def with_company(points: NDArray[Any], present: Bools | None) -> NDArray[Any]:
+    """A fluid's points (F, n, 3) [m]; one that is not in the world stands in the middle of those that are then.
+
+    Before the first is there it is in the middle of those at the time when they are.
+    """
+    if present is None or present.all() or not present.any():
+        return points if present is None or present.any() else points[:, :0]
+    own = present[..., None]
+    count = own.sum(axis=1)
+    middle = np.where(own, points, 0.0).sum(axis=1) / np.maximum(count, 1)
+    some = np.flatnonzero(count[:, 0])
+    nearest = some[np.abs(some[None] - np.arange(len(points))[:, None]).argmin(axis=1)]
+    return np.where(own, points, middle[nearest][:, None]).astype(points.dtype)
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,7 +199,8 @@ class Recording:
         fluids = {}
         for prim, track in self.fluids.items():
             for j in np.flatnonzero(track.time == self.time[i]):
-                fluids[prim] = FluidFrame(track.position[j], track.velocity[j], track.density[j])
+                present = None if track.present is None else track.present[j]
+                fluids[prim] = FluidFrame(track.position[j], track.velocity[j], track.density[j], present)
         scalars = {name: float(values[i]) for name, values in self.scalars.items()}
         return Frame(self.body_q[i], self.body_qd[i], self.contact_force[i], fluids, scalars)
 

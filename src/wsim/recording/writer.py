@@ -101,8 +101,8 @@ class RecordingWriter:
         self.frame_count += 1
         self._bodies.add(ns, float(t), rows, causes, causes_of_frame(frame), frame.contacts, frame.ties)
         self._cords.add(ns, rows[0])
-        for prim, arrays in fluids.items():
-            self._fluids[prim].add(ns, *arrays)
+        for prim, checked in fluids.items():
+            self._fluids[prim].add(ns, frame.fluids[prim], checked)
         for name, value in frame.scalars.items():
             self._rows.add(names.SCALAR_ROOT + name, ns, {names.SCALARS: float(value)})
         if time.monotonic() - self._flushed_at > FLUSH_SECONDS:

@@ -28,7 +28,11 @@ class Trajectory:
     def of(cls, path: Path) -> Trajectory:
         """A recording's."""
         found = recording.read_kept(path)
-        ends = {prim: np.asarray(track.position[-1]) for prim, track in found.fluids.items() if len(track.time)}
+        ends = {
+            prim: np.asarray(track.position[-1])[track.there(-1)]
+            for prim, track in found.fluids.items()
+            if len(track.time)
+        }
         return cls(np.asarray(found.time), np.asarray(found.body_q), ends)
 
     def distance(self, other: Trajectory) -> float:

@@ -45,6 +45,7 @@ from wsim.scene.check_targets import check_targets
 from wsim.scene.errors import one_line
 from wsim.scene.skeleton import is_free
 from wsim.scene.usd_cameras import camera_problems
+from wsim.scene.usd_openings import opening_problems
 from wsim.scene.usd_policies import policy_problems
 from wsim.scene.usd_reaches import reach_problems
 from wsim.scene.usd_schedules import schedule_problems
@@ -153,6 +154,7 @@ def _stage_problems(stage: Usd.Stage, known: bool) -> Iterator[str]:
         yield from reach_problems(ours)
         yield from schedule_problems(ours)
         yield from sensor_problems(ours)
+        yield from opening_problems(ours)
         yield from camera_problems(prims)
         if any(schema.has(prim, schema.CONTACT) for prim in ours):
             yield from contact_problems(prims)
@@ -341,10 +343,11 @@ def _fluid(prim: Usd.Prim) -> Iterator[str]:
     problems = [
         *_bounded(prim.GetAttribute("wsim:density"), MAX_DENSITY, "kg/m^3"),
         *_bounded(prim.GetAttribute("wsim:viscosity"), 1e6, "Pa s", zero=True),
-        *_bounded(prim.GetAttribute("wsim:size"), MAX_SIZE, "m"),
+        *_bounded(prim.GetAttribute("wsim:size"), MAX_SIZE, "m", zero=True),
         *_bounded(prim.GetAttribute("wsim:spacing"), MAX_SIZE, "m"),
         *_bounded(prim.GetAttribute("wsim:speedOfSound"), 1e4, "m/s", zero=True),
         *_bounded(prim.GetAttribute("wsim:attenuationLength"), MAX_SIZE, "m", zero=True),
+        *_within(prim.GetAttribute("wsim:velocity"), MAX_SPEED, "m/s"),
     ]
     yield from problems
     size, spacing = prim.GetAttribute("wsim:size").Get(), prim.GetAttribute("wsim:spacing").Get()

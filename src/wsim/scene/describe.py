@@ -23,6 +23,7 @@ from wsim.scene.usd_cameras import is_view, read_camera
 from wsim.scene.usd_contacts import read_contacts
 from wsim.scene.usd_mass import mass_of
 from wsim.scene.usd_motion import curve_of, path_of, with_surface_velocity
+from wsim.scene.usd_openings import read_drains, read_taps
 from wsim.scene.usd_policies import read_policies
 from wsim.scene.usd_prims import object_path, owner_of, rigid_frame, turn_of
 from wsim.scene.usd_reaches import read_joint_paths, read_reaches
@@ -68,6 +69,8 @@ def describe(stage: Usd.Stage | str | Path) -> World:
         statics=statics,
         containers=[_container(prim) for prim in ours if schema.has(prim, schema.CONTAINER)],
         fluids=[_fluid(prim) for prim in ours if schema.has(prim, schema.FLUID)],
+        taps=list(read_taps(ours)),
+        drains=list(read_drains(ours)),
         joints=joints,
         gears=gears,
         policies=list(read_policies(ours)),
@@ -220,6 +223,7 @@ def _fluid(prim: Usd.Prim) -> Fluid:
         spacing=value_of(prim, "spacing", 0.0),
         size=to_vec3(value_of(prim, "size", Gf.Vec3f(0.0))),
         center=to_vec3(rigid_frame(prim).ExtractTranslation()),
+        velocity=to_vec3(value_of(prim, "velocity", Gf.Vec3f(0.0))),
         speed_of_sound=value_of(prim, "speedOfSound", 0.0),
         container=str(targets[0]) if targets else None,
         attenuation_length=value_of(prim, "attenuationLength", None),

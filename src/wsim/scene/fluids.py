@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from pxr import Gf, Sdf, UsdGeom
 
-from wsim.limits import MAX_SIZE
+from wsim.limits import MAX_SIZE, MIN_SIZE
 from wsim.scene import schema
 from wsim.scene.authoring import Handle, note_line, set_extent, set_pose
 from wsim.scene.materials import Look, Material, bind
@@ -51,6 +51,7 @@ class Fluids(Tanks):
         size: Sequence[float] | None = None,
         position: Sequence[float] | None = None,
         container: Handle | str | None = None,
+        velocity: Sequence[float] = (0.0, 0.0, 0.0),
         density: float = 1000.0,
         viscosity: float = 0.001,
         speed_of_sound: float = 0.0,
@@ -63,10 +64,11 @@ class Fluids(Tanks):
             name: Name of the prim.
             spacing: Distance between particles [m].
             fills: The tank to fill, with `level`.
-            level: Depth above the tank's inner floor [m].
+            level: Depth above the tank's inner floor [m]; 0 for what a `tap` is to pour.
             size: Instead of `fills`: edges (x, y, z) of a box of fluid [m], with `position`.
             position: Centre of that box [m].
             container: The tank that box stands in; found by itself where the box lies inside one.
+            velocity: That all of it starts with, in the world [m/s].
             density: Rest density [kg/m^3].
             viscosity: Dynamic viscosity [Pa s]; water 0.001, honey 10.
             speed_of_sound: Numerical, of weakly compressible SPH [m/s]; 0 lets the solver choose.
@@ -96,8 +98,9 @@ class Fluids(Tanks):
                 call.fail("give fills= and level=, or size= and position= of a free box of fluid")
             edges, center = call.sizes("size", size), call.position("position", position)
             tank = self._holder(call, edges, center, container)
-        _check_thickness(call, edges, step, "level" if fills is not None else "size", "the fluid")
-        call.particles(edges, step)
+        if edges[2] > 0.0:
+            _check_thickness(call, edges, step, "level" if fills is not None else "size", "the fluid")
+            call.particles(edges, step)
         fluid = Fluid(name=name, path=path, kind="fluid", size=edges, center=center, spacing=step)
         self._check_overlap(call, fluid)
         values = {
@@ -105,6 +108,7 @@ class Fluids(Tanks):
             "viscosity": (Sdf.ValueTypeNames.Double, call.within("viscosity", viscosity, 0.0, 1e6, "Pa s")),
             "spacing": (Sdf.ValueTypeNames.Double, step),
             "size": (Sdf.ValueTypeNames.Float3, Gf.Vec3f(*edges)),
+            "velocity": (Sdf.ValueTypeNames.Float3, Gf.Vec3f(*call.velocity(velocity))),
             "speedOfSound": (
                 Sdf.ValueTypeNames.Double,
                 call.within("speed_of_sound", speed_of_sound, 0.0, 1e4, "m/s"),
@@ -135,7 +139,8 @@ class Fluids(Tanks):
             relation.SetTargets([Sdf.Path(tank.path)])
         cube = UsdGeom.Cube.Define(self._stage, f"{fluid.path}/volume")
         cube.CreateSizeAttr(1.0)
-        set_pose(cube.GetPrim(), (0.0, 0.0, 0.0), scale=fluid.size)
+        # One that is empty yet is a film, which carries its look.
+        set_pose(cube.GetPrim(), (0.0, 0.0, 0.0), scale=(fluid.size[0], fluid.size[1], max(fluid.size[2], MIN_SIZE)))
         set_extent(cube.GetPrim())
         note_line(cube.GetPrim())
         bind(cube.GetPrim(), self._liquid(fluid.name, color, opacity))
@@ -179,7 +184,9 @@ def _filling(call: Call, tank: Tank, level: float | None) -> tuple[Vec3, Vec3]:
     """Size and centre of the fluid in a tank [m]."""
     if level is None:
         call.fail("fills is given without level, the depth above the tank's inner floor in m")
-    depth = call.size("level", level)
+    depth = call.number("level", level, "m")
+    if depth != 0.0:
+        depth = call.size("level", level)
     if depth > tank.inner_size[2] + _TOUCH:
         call.fail(
             f'level = {depth:g} m is above the rim of tank "{tank.name}": its hollow is {tank.inner_size[2]:g} m high'

@@ -18,6 +18,7 @@ from wsim.scene.check_joints import joint_problems
 from wsim.scene.contacts import Contacts
 from wsim.scene.errors import SceneError
 from wsim.scene.motions import Motions
+from wsim.scene.openings import Openings
 from wsim.scene.policies import Policies
 from wsim.scene.robots import Robots
 from wsim.scene.scattered import Scattered
@@ -31,7 +32,7 @@ from wsim.scene.views import Views
 _MAX_SEED = 2**31 - 1
 
 
-class Scene(Scattered, Cables, Vehicles, Contacts, Motions, Views, Robots, Policies, Sensors, Schedules):
+class Scene(Scattered, Cables, Vehicles, Contacts, Motions, Views, Robots, Policies, Sensors, Schedules, Openings):
     """A world to be: an OpenUSD stage and the calls that author it.
 
     SI units, Z up, +X forward, +Y left. Every call checks what it is given and raises `SceneError`, naming the call,

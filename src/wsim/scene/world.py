@@ -5,6 +5,7 @@ SI units, Z up, quaternions xyzw. Nothing here imports pxr, so a recording can b
 
 from __future__ import annotations
 
+import math
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -13,6 +14,7 @@ from wsim.assets.policies import PolicySpec
 from wsim.defaults import DURATION, FIELD_OF_VIEW, FRAME_RATE, GRAVITY
 from wsim.geometry.profiles import Profile
 from wsim.quantities import Name as Quantity
+from wsim.scene.world_openings import Drain, Tap
 from wsim.scene.world_sensors import Sensor
 
 Vec3 = tuple[float, float, float]
@@ -123,6 +125,7 @@ class Fluid(_Model):
     spacing: float  # particle spacing [m]
     size: Vec3  # [m]
     center: Vec3  # [m], world
+    velocity: Vec3 = (0.0, 0.0, 0.0)  # [m/s], world
     speed_of_sound: float = 0.0  # [m/s]; 0 lets the solver choose
     container: str | None = None  # prim of the container it fills
     color: Vec3 = (0.15, 0.4, 0.6)
@@ -130,6 +133,12 @@ class Fluid(_Model):
         None  # [m], after which 1/e of the light is left; None: clear, as the box is large
     )
     line: str | None = None
+
+    @property
+    def cell(self) -> float:
+        """Volume that a particle stands for [m^3]: a cell of the lattice that fills its box, or a spacing's cube."""
+        cells = math.prod(max(1, round(length / self.spacing)) for length in self.size)
+        return math.prod(self.size) / cells or self.spacing**3
 
 
 class Motor(_Model):
@@ -406,6 +415,8 @@ class World(_Model):
     statics: list[Static] = Field(default_factory=list)
     containers: list[Container] = Field(default_factory=list)
     fluids: list[Fluid] = Field(default_factory=list)
+    taps: list[Tap] = Field(default_factory=list)
+    drains: list[Drain] = Field(default_factory=list)
     joints: list[Joint] = Field(default_factory=list)
     contacts: list[Contact] = Field(default_factory=list)
     gears: list[Gear] = Field(default_factory=list)

@@ -33,7 +33,7 @@ class FluidTracks:
     def __init__(self, simulation: Simulation, solver: SolverSPH, time: Array) -> None:
         self._simulation, self._solver, self._time = simulation, solver, time
         self.tracks = [
-            {prim: _empty(time, part.stop - part.start) for prim, part in fluids.items()}
+            {prim: _empty(time, part.stop - part.start, solver.openings is not None) for prim, part in fluids.items()}
             for fluids in simulation.built.fluids
         ]
         self._faults = [""] * len(self.tracks)
@@ -50,6 +50,10 @@ class FluidTracks:
                 kept.position[frame], kept.velocity[frame], kept.density[frame] = (
                     made.position, made.velocity, made.density,
                 )  # fmt: skip
+                if kept.present is not None and made.present is not None:
+                    kept.present[frame] = made.present
+                    for each in (kept.position, kept.velocity, kept.density):
+                        each[frame, ~made.present] = np.nan
             for name, number in told.items():
                 self.scalars.setdefault(name, np.zeros((len(self.tracks), len(self._time))))[w, frame] = number
         self.wall_impulse[:, frame] = self._solver.take_wall_impulse()
@@ -61,7 +65,8 @@ class FluidTracks:
         return [[fault] if fault else [] for fault in self._faults]
 
 
-def _empty(time: Array, count: int) -> FluidTrack:
+def _empty(time: Array, count: int, comes: bool) -> FluidTrack:
     shape = len(time), count
     position, velocity = (np.zeros((*shape, 3), dtype=np.float32) for _ in range(2))
-    return FluidTrack(time, position, velocity, np.zeros(shape, dtype=np.float32))
+    present = np.zeros(shape, dtype=bool) if comes else None
+    return FluidTrack(time, position, velocity, np.zeros(shape, dtype=np.float32), present)

@@ -1,4 +1,4 @@
-"""Boxes of fluid → particles at rest on a lattice."""
+"""Boxes of fluid → particles on a lattice."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ from newton import GeoType, ParticleFlags, ShapeFlags
 from wsim.errors import UserError
 from wsim.geometry.filled import box_lattice
 from wsim.geometry.rotations import conjugate, rotate
-from wsim.geometry.shapes import into, kind_of
+from wsim.geometry.shapes import into, kind_of, reach
 from wsim.scene.world import Fluid, Shape, World
+from wsim.sim.openings import fastest_poured, waiting
 from wsim.solvers.inside import depth_in, solid_of
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.sph_config import ConfigSPH
@@ -27,20 +28,27 @@ Depth = Callable[[Array], Array]
 
 @dataclass(frozen=True)
 class Seeded:
-    """The particles of one fluid: positions [m] (n, 3), masses [kg] (n,), pressures [Pa] (n,)."""
+    """The particles of one fluid, n of them: positions [m] and velocities [m/s] (n, 3), masses [kg], pressures [Pa] and
+    `ParticleFlags`.
+
+    Those that wait for taps follow the others; they are not `ParticleFlags.ACTIVE`.
+    """
 
     prim: str
     position: Array
+    velocity: Array
     mass: Array
     pressure: Array
+    flags: Array
 
 
-def containers_of(world: World) -> tuple[OpenBox, ...]:
-    """The tanks of a world, with the labels of the wall shapes that each stands for."""
+def containers_of(world: World, k: int = -1) -> list[OpenBox]:
+    """The tanks of world k, or of all, with the labels of the wall shapes that each stands for."""
     walls = {static.prim: frozenset(shape.prim for shape in static.shapes) for static in world.statics}
-    return tuple(
-        OpenBox(c.inner_center, c.inner_size, c.rotation, walls.get(c.prim, frozenset())) for c in world.containers
-    )
+    return [
+        OpenBox(c.inner_center, c.inner_size, c.rotation, walls.get(c.prim, frozenset()), world=k)
+        for c in world.containers
+    ]
 
 
 def common_fluid(world: World) -> Fluid:
@@ -95,18 +103,28 @@ def largest_step(world: World, config: ConfigSPH) -> float:
 
 
 def expected_speed(world: World) -> float:
-    """Largest speed that the fluid should see [m/s]: gravity waves or a collapse, and bodies that fall in."""
+    """Largest speed that the fluid should see [m/s]: its start, waves or a collapse, jets, and bodies that fall in."""
     g = float(np.linalg.norm(world.gravity))
-    speeds = [0.1]
+    speeds = [0.1, fastest_poured(world, g)]
     for fluid in world.fluids:
         # A fluid that fills its container from wall to wall can only slosh, at the shallow-water wave's speed;
-        # a free column falls by its height.
-        speeds.append(math.sqrt((1.0 if _fills(fluid, world) else 2.0) * g * fluid.size[2]))
+        # a column in one falls by its height, a free one to the lowest that there is.
+        falls = 2.0 * (fluid.size[2] if fluid.container else max(_over_all(fluid, world), fluid.size[2]))
+        wave = math.sqrt((fluid.size[2] if _fills(fluid, world) else falls) * g)
+        speeds.append(math.hypot(*fluid.velocity, wave))
     for body in world.bodies:
         bottom = body.position[2] - 0.5 * min((kind_of(shape).thinnest for shape in body.shapes), default=0.0)
         drop = max((bottom - (f.center[2] + 0.5 * f.size[2]) for f in world.fluids), default=0.0)
         speeds.append(math.sqrt(2.0 * g * max(drop, 0.0)))
     return max(speeds)
+
+
+def _over_all(fluid: Fluid, world: World) -> float:
+    """How high the top of a fluid is above the lowest point of what stands still, and above planes [m]."""
+    still = [shape for static in world.statics for shape in static.shapes if shape.collides]
+    planes = [shape.position[2] for shape in still if shape.kind == "plane"]
+    lows = planes or [float(reach(shape, np.array([[0.0, 0.0, 0.0, 1.0]]))[0][0]) for shape in still]
+    return fluid.center[2] + 0.5 * fluid.size[2] - min(lows, default=math.inf)
 
 
 def _fills(fluid: Fluid, world: World) -> bool:
@@ -137,20 +155,38 @@ def mesh_depths(builder: Any, world: World) -> dict[str, list[Depth]]:
     return found
 
 
-def seed(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Seeded:
-    """Particles of a box of fluid at rest under its own weight, without those where a solid already is.
+def seed(fluid: Fluid, world: World, config: ConfigSPH, meshes: dict[str, list[Depth]]) -> Seeded:
+    """Particles of a fluid: of its box, and those that wait for its taps.
 
     The mass of each is the fluid's density times its cell, so that the fluid's mass is right whatever the spacing.
     The pressure is hydrostatic.
 
     Args:
-        fluid: The box.
-        world: For gravity, and for the bodies and fixed objects that stand in the fluid.
+        fluid: The box; one of no height holds nothing yet.
+        world: For gravity, taps, and the bodies and fixed objects that stand in the fluid.
+        config: Settings of the method.
         meshes: What `mesh_depths` found of those.
     """
     cells = box_lattice(np.array(fluid.size), fluid.spacing)
+    volume = float(cells.volume[0]) or fluid.spacing**3
+    position = _standing(fluid, world, cells.position, meshes) if fluid.size[2] > 0.0 else np.zeros((0, 3))
+    depth = 0.5 * fluid.size[2] + fluid.center[2] - position[:, 2]
+    pressure = fluid.density * abs(world.gravity[2]) * np.maximum(depth, 0.0)
+    there, count = len(position), waiting(fluid, world, config, volume)
+    return Seeded(
+        prim=fluid.prim,
+        position=np.concatenate([position, np.zeros((count, 3))]),
+        velocity=np.repeat([fluid.velocity, (0.0, 0.0, 0.0)], [there, count], axis=0),
+        mass=np.full(there + count, fluid.density * volume),
+        pressure=np.append(pressure, np.zeros(count)),
+        flags=np.repeat(np.array([int(ParticleFlags.ACTIVE), 0], dtype=np.int32), [there, count]),
+    )
+
+
+def _standing(fluid: Fluid, world: World, cells: Array, meshes: dict[str, list[Depth]]) -> Array:
+    """Where particles of a box of fluid are, of cells in its frame: not where a solid already is, (n, 3) [m]."""
     rotation = next((c.rotation for c in world.containers if c.prim == fluid.container), (0.0, 0.0, 0.0, 1.0))
-    position = rotate(np.array(rotation), cells.position) + np.array(fluid.center)
+    position = rotate(np.array(rotation), cells) + np.array(fluid.center)
     free = np.ones(len(position), dtype=bool)
     margin, tanks = 0.4 * fluid.spacing, {container.prim for container in world.containers}
     for body in world.bodies:
@@ -159,19 +195,12 @@ def seed(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Seeded:
     for static in world.statics:
         if static.prim not in tanks:  # whose fluid is cut to its walls
             free &= ~_inside(static.shapes, position, margin, meshes.get(static.prim, []))
-    position = position[free]
-    if len(position) == 0:
+    if not free.any():
         raise UserError(f"{fluid.prim}: bodies leave no room for fluid of spacing {fluid.spacing} m in {fluid.size} m")
-    depth = 0.5 * fluid.size[2] + fluid.center[2] - position[:, 2]
-    return Seeded(
-        prim=fluid.prim,
-        position=position,
-        mass=fluid.density * cells.volume[free],
-        pressure=fluid.density * abs(world.gravity[2]) * np.maximum(depth, 0.0),
-    )
+    return position[free]
 
 
-def add_seeded(builder: Any, worlds: Sequence[World]) -> tuple[list[dict[str, slice]], Array]:
+def add_seeded(builder: Any, worlds: Sequence[World], config: ConfigSPH) -> tuple[list[dict[str, slice]], Array]:
     """Fill the worlds of a builder that has no particles with fluid, as arrays.
 
     Returns:
@@ -179,17 +208,17 @@ def add_seeded(builder: Any, worlds: Sequence[World]) -> tuple[list[dict[str, sl
     """
     parts, ranges = [], []
     for world in worlds:
-        seeded = [seed(fluid, world, {}) for fluid in world.fluids]
+        seeded = [seed(fluid, world, config, {}) for fluid in world.fluids]
         ends = np.cumsum([0, *(len(each.mass) for each in seeded)]).tolist()
         ranges.append({each.prim: slice(*ends[k : k + 2]) for k, each in enumerate(seeded)})
         parts += seeded
     counts = [sum(part.stop - part.start for part in own.values()) for own in ranges]
     builder.particle_q = np.concatenate([part.position for part in parts]).astype(np.float32)
-    builder.particle_qd = np.zeros_like(builder.particle_q)
+    builder.particle_qd = np.concatenate([part.velocity for part in parts]).astype(np.float32)
     builder.particle_mass = np.concatenate([part.mass for part in parts]).astype(np.float32)
     radii = [0.5 * fluid.spacing for world in worlds for fluid in world.fluids]
     builder.particle_radius = np.repeat(np.array(radii, dtype=np.float32), [len(part.mass) for part in parts])
-    builder.particle_flags = np.full(sum(counts), int(ParticleFlags.ACTIVE), dtype=np.int32)
+    builder.particle_flags = np.concatenate([part.flags for part in parts])
     builder.particle_world = np.repeat(np.arange(len(worlds), dtype=np.int32), counts)
     return ranges, np.concatenate([part.pressure for part in parts]).astype(np.float32)
 

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.sim.openings import seen_particles
+
 if TYPE_CHECKING:
-    from newton import State
+    from newton import Model, State
 
 
 class KeptStates:
@@ -37,12 +39,12 @@ class KeptStates:
         """Frames."""
         return len(self.times)
 
-    def add(self, time: float, state: State) -> None:
-        """Keep a frame's state, of a time [s]."""
+    def add(self, time: float, model: Model, state: State) -> None:
+        """Keep a frame's state of a model, of a time [s]."""
         self.times.append(time)
         self._poses.append(state.body_q.numpy().copy() if state.body_q is not None else np.zeros((0, 7), np.float32))
         if state.particle_q is not None:
-            particles = np.ascontiguousarray(state.particle_q.numpy(), dtype=np.float32)
+            particles = np.ascontiguousarray(seen_particles(model, state), dtype=np.float32)
             self._count = len(particles)
             self._particles.write(particles.tobytes())
 
@@ -50,7 +52,7 @@ class KeptStates:
         """Bring a state's bodies to where they were at a frame.
 
         Returns:
-            (N, 3) the particles then [m].
+            (N, 3) the particles then [m]; NaN of one that was not in the world.
         """
         if len(self._poses[frame]):
             state.body_q.assign(self._poses[frame])

@@ -12,6 +12,7 @@ from wsim.recording import FluidFrame, Frame
 from wsim.scene.cord_paths import spring_track
 from wsim.sim.ledger import Entry, Ledger
 from wsim.sim.model import Built
+from wsim.sim.openings import opening_scalars
 from wsim.sim.rigid import RigidBodies
 from wsim.solvers.solver_sph import SolverSPH
 
@@ -93,25 +94,33 @@ def measure_fluids(
     built: Built, state: Any, solver: SolverSPH, worlds: Sequence[int]
 ) -> list[tuple[dict[str, FluidFrame], dict[str, float]]]:
     """The particles of some worlds by fluid, and what they come to: energies [J], the largest speed [m/s], the error
-    of the density over the one at rest."""
+    of the density over the one at rest; what came, is held and went, where there are taps or drains."""
     q, qd, p = (array.numpy() for array in (state.particle_q, state.particle_qd, state.sph.pressure))
     at_rest, mass = solver.rest_density.numpy(), built.model.particle_mass.numpy()
+    openings = solver.openings
+    there = openings.free() if openings else np.ones(len(q), dtype=bool)
+    passed = (openings.come(), openings.gone(), openings.take_impulse()) if openings else None
     found = []
     for w in worlds:
-        density = {prim: at_rest[w] + p[part] / built.sph.speed_of_sound**2 for prim, part in built.fluids[w].items()}
+        density = at_rest[w] + p / built.sph.speed_of_sound**2
         frames = {
-            prim: FluidFrame(q[part].copy(), qd[part].copy(), density[prim]) for prim, part in built.fluids[w].items()
+            prim: FluidFrame(q[part].copy(), qd[part].copy(), density[part], there[part] if openings else None)
+            for prim, part in built.fluids[w].items()
         }
         part = slice(min(s.start for s in built.fluids[w].values()), max(s.stop for s in built.fluids[w].values()))
-        error = np.abs(np.concatenate(list(density.values())) / at_rest[w] - 1.0)
-        speed2 = np.einsum("ij,ij->i", qd[part].astype(np.float64), qd[part].astype(np.float64))
+        own = np.flatnonzero(there[part]) + part.start
+        error = np.abs(density[own] / at_rest[w] - 1.0)
+        speed2 = np.einsum("ij,ij->i", qd[own].astype(np.float64), qd[own].astype(np.float64))
         scalars = {
-            "fluid/density_error_mean": float(error.mean()),
-            "fluid/density_error_max": float(error.max()),
-            "fluid/speed_max": float(np.sqrt(speed2.max())),
-            "energy/kinetic_fluid": float(0.5 * (mass[part] * speed2).sum()),
-            "energy/potential_fluid": float(-(mass[part] * (q[part] @ np.array(built.world_of(w).gravity))).sum()),
+            "fluid/density_error_mean": float(error.mean()) if len(own) else 0.0,
+            "fluid/density_error_max": float(error.max(initial=0.0)),
+            "fluid/speed_max": float(np.sqrt(speed2.max(initial=0.0))),
+            "energy/kinetic_fluid": float(0.5 * (mass[own] * speed2).sum()),
+            "energy/potential_fluid": float(-(mass[own] * (q[own] @ np.array(built.world_of(w).gravity))).sum()),
         }
+        if passed:
+            come, gone, impulse = (each[w] for each in passed)
+            scalars |= opening_scalars(float(come), float(gone), float(mass[own].sum(dtype=np.float64)), impulse)
         found.append((frames, scalars))
     return found
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -27,6 +27,7 @@ from wsim.sim.drives import add_drives
 from wsim.sim.fluids import Seeded, add_seeded, containers_of, largest_step, mesh_depths, of_worlds, seed, sph_config
 from wsim.sim.forward import forward_only
 from wsim.sim.numbers import add_worlds, differences, texts
+from wsim.sim.openings import drains_of, taps_of
 from wsim.sim.pieces import with_pieces
 from wsim.sim.placed import aim_drives, place_joints
 from wsim.sim.stated import confirmed, numbers_of, replicate, state_numbers, unstated
@@ -36,6 +37,7 @@ from wsim.solvers.breaking import Breakable
 from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
+from wsim.solvers.sph_mouths import Drain, Tap
 from wsim.solvers.surface_contacts import SurfaceParts
 
 forward_only()
@@ -59,6 +61,8 @@ class Built:
     fluids: tuple[dict[str, slice], ...]
     sph: Any  # SolverSPH.Config, or None without a fluid
     containers: tuple[OpenBox, ...]
+    taps: tuple[Tap, ...]
+    drains: tuple[Drain, ...]
     time_step: TimeStep
     breakable: list[list[Breakable]]
     surfaces: SurfaceParts | None = None  # what collides by its triangles
@@ -153,7 +157,7 @@ def build_batch(
             progress(told, 1, 1)
         else:
             if config:
-                ranges, pressures = add_seeded(builder, worlds)
+                ranges, pressures = add_seeded(builder, worlds, config)
                 ones = [replace(one, fluids=own) for one, own in zip(ones, ranges, strict=True)]
         if config:
             for name, own in of_worlds(worlds).items():
@@ -282,7 +286,9 @@ def _finalized(builder: Any, ones: Sequence[_One], config: Any | None, step: Tim
         bodies=_body_indices(model, first.world),
         fluids=_ranges(ones, max(1, model.world_count)),
         sph=config,
-        containers=_containers(ones),
+        containers=tuple(_of_each(ones, containers_of)),
+        taps=tuple(_of_each(ones, taps_of)),
+        drains=tuple(_of_each(ones, drains_of)),
         time_step=step,
         breakable=[one.breakable for one in ones],
         surfaces=first.surfaces,
@@ -323,23 +329,24 @@ def _ranges(ones: Sequence[_One], count: int) -> tuple[dict[str, slice], ...]:
     return tuple(found)
 
 
-def _containers(ones: Sequence[_One]) -> tuple[OpenBox, ...]:
-    """The tanks of all worlds alike, or those of each."""
+def _of_each(ones: Sequence[_One], found: Callable[[World, int], list[Any]]) -> list[Any]:
+    """What is found in all worlds alike, or in each."""
     if len(ones) == 1:
-        return containers_of(ones[0].world)
-    return tuple(replace(box, world=k) for k, one in enumerate(ones) for box in containers_of(one.world))
+        return found(ones[0].world, -1)
+    return [each for k, one in enumerate(ones) for each in found(one.world, k)]
 
 
 def _add_fluids(builder: Any, world: World, config: Any) -> dict[str, slice]:
     slices, meshes = {}, mesh_depths(builder, world)
     for fluid in world.fluids:
-        seeded: Seeded = seed(fluid, world, meshes)
+        seeded: Seeded = seed(fluid, world, config, meshes)
         first, count = builder.particle_count, len(seeded.position)
         builder.add_particles(
             pos=seeded.position.tolist(),
-            vel=[(0.0, 0.0, 0.0)] * count,
+            vel=seeded.velocity.tolist(),
             mass=seeded.mass.tolist(),
             radius=[0.5 * fluid.spacing] * count,
+            flags=seeded.flags.tolist(),
             custom_attributes={"sph:pressure": seeded.pressure.tolist()},
         )
         slices[fluid.prim] = slice(first, first + count)

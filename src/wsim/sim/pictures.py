@@ -109,7 +109,7 @@ class Pictures:
             time: Simulated [s].
             state: Of that time; it is copied.
         """
-        self._kept.add(time, state)
+        self._kept.add(time, self.built.model, state)
 
     def draw(self, motion: Motion) -> None:
         """Frame the cameras on a run's motion, and draw all that was kept: the first every frame, the others stills."""

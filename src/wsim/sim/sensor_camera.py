@@ -19,6 +19,7 @@ from wsim.scene.world import World
 from wsim.sim import render_materials
 from wsim.sim.cameras import REACH, CameraImage, CameraRenderer
 from wsim.sim.joint_arrays import in_every_world
+from wsim.sim.openings import seen_particles
 from wsim.sim.render_views import vertical_fov
 
 if TYPE_CHECKING:
@@ -71,7 +72,7 @@ class Camera:
         A world that has lost a body has no picture: it is black, infinitely deep, and of nothing.
         """
         state, fluids = simulation.state, self._built.fluids
-        points = state.particle_q.numpy() if fluids[0] else np.zeros((0, 3))
+        points = seen_particles(simulation.model, state) if fluids[0] else np.zeros((0, 3))
         lost, images = self._lost(state), []
         for w, renderer in enumerate(self._renderers):
             if lost[w]:

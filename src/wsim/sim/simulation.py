@@ -181,8 +181,7 @@ class Simulation:
         if self.rigid:
             self.rigid.reset(self.state)
         if self.fluid:
-            self.fluid.reset_search()
-            self.fluid.take_wall_impulse()
+            self.fluid.restart()
 
     def _launched(self) -> list[compiling.Needed]:
         """What a step launches, and a picture; MuJoCo's C code is left out, which keeps what it is given."""
@@ -192,6 +191,7 @@ class Simulation:
             needed = compiling.rehearse(self._push_and_move)
         else:
             needed = compiling.rehearse(self._push_and_flow)
+        needed += compiling.rehearse(self._follow)
         needed += compiling.rehearse(lambda: launch_all(self.policies, self))
         if self._draws:
             needed += compiling.rehearse(lambda: CameraRenderer(self.model, self.world))
@@ -199,16 +199,26 @@ class Simulation:
         return needed
 
     def _make_fluid(self) -> SolverSPH | None:
-        return SolverSPH(self.model, self.built.sph, self.built.containers) if self.built.sph else None
+        built = self.built
+        if not built.sph:
+            return None
+        return SolverSPH(self.model, built.sph, built.containers, built.taps, built.drains)
 
     def step(self) -> None:
         """Advance by one time step: the fluid pushes the bodies, then the bodies move."""
+        self._follow()
         self._until_control()
         if self._replays:
             wp.capture_launch(self._captured(1))
         else:
             self._push_and_move()
         self._count(1)
+
+    def _follow(self) -> None:
+        """Where a frame begins, let what stands still be there for the fluid until the next one does."""
+        begins = self.step_count % self.substeps == 0
+        if self.fluid and begins and self.fluid.follow(self.state, self.substeps * self.dt):
+            self._graphs.clear()
 
     def _push_and_move(self) -> None:
         self._push_and_flow()
@@ -234,6 +244,7 @@ class Simulation:
                 self.step()
             return
         left = self.substeps
+        self._follow()
         while left:
             steps = min(left, self._until_control())
             if alone:
@@ -314,8 +325,6 @@ class Simulation:
         with ExitStack() as stack:
             stack.enter_context(phases.phase("record"))
             writer = stack.enter_context(RecordingWriter(recording, self.world, {**(metadata or {}), **self.facts()}))
-            if self.fluid:
-                writer.solids(solids_of(self.built, self.fluid, 0))
             pictures = None
             if video:
                 with phases.phase("prepare the camera"):
@@ -348,6 +357,8 @@ class Simulation:
                     break
             if self.sensors and not problems:
                 self.sensors.ask(self.step_count, self)  # whose turn is at the end
+            if self.fluid:
+                writer.solids(solids_of(self.built, self.fluid, 0))
             motion = moved.motion()
             pictures.draw(motion) if pictures else write_views(writer, self.world, motion, named)
             if problems:

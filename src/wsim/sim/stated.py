@@ -201,6 +201,8 @@ def _of_joints(first: Any, worlds: Sequence[World], index: Mapping[str, int]) ->
 
 
 def _of_shapes(first: Any, worlds: Sequence[World]) -> dict[str, Array]:
+    if not first.shape_label:  # water that nothing holds
+        return {}
     order = [{shape.prim: k for k, shape in enumerate(_shapes(worlds[0]))}[label] for label in first.shape_label]
     rows = [[shapes[k] for k in order] for shapes in map(_shapes, worlds)]
     least = 2.0 * ContactConfig().smallest_friction

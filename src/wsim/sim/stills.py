@@ -21,6 +21,7 @@ from wsim.sim.framing.moments import STILLS, chosen
 from wsim.sim.framing.motion import Motion
 from wsim.sim.marks import Marks
 from wsim.sim.model import build_model
+from wsim.sim.openings import seen_particles
 from wsim.sim.seen import ObjectPixels
 
 if TYPE_CHECKING:
@@ -75,7 +76,7 @@ class Stills:
 
     def draw_start(self) -> list[Still]:
         """The world as the stage states it, one still a camera."""
-        particles = self._state.particle_q.numpy() if self._built.fluids[0] else np.zeros((0, 3))
+        particles = seen_particles(self._built.model, self._state) if self._built.fluids[0] else np.zeros((0, 3))
         return self._draw(0.0, {prim: particles[part] for prim, part in self._built.fluids[0].items()})
 
     def draw_moments(self, recording: Recording, named: Sequence[str] = (), most: int = STILLS) -> list[Still]:

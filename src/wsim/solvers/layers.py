@@ -17,6 +17,7 @@ Array = np.ndarray
 RELAXED = 3  # layers of a mesh, from its surface inward: what the fluid's kernel reaches
 PIECES = 4  # that a lattice cell's edge is cut into, to say what belongs to which particle of a mesh
 SWEEPS = 10
+ROUGHLY = (3, 2)  # sweeps and pieces of what only lies there: nothing floats on how round it is
 
 
 def mesh_layers(vertices: Array, triangles: Array, spacing: float, convex: bool) -> Samples:
@@ -48,7 +49,44 @@ def mesh_layers(vertices: Array, triangles: Array, spacing: float, convex: bool)
     return Samples(position, volume * (abs(float(solid.volume)) / volume.sum()))
 
 
-def _spread(cells: Array, depth: Array, edge: Array, spacing: float, depth_of: Callable[[Array], Array]) -> Samples:
+def mesh_part(
+    depth_of: Callable[[Array], Array], low: Array, high: Array, spacing: float, shell: float
+) -> Samples:  # fmt: skip
+    """Particles of the part of a solid that is in a box, less than `shell` below its surface.
+
+    Each part is filled for itself, with what of the solid is in it: parts that meet fill it together, with volumes that
+    add up, whichever comes first.
+
+    Args:
+        depth_of: How deep points are below the surface [m].
+        low: Lower corner of the box [m].
+        high: Upper corner.
+        spacing: Between particles [m].
+        shell: Thickness [m].
+    """
+    axes = [lattice_axis(float(length), spacing) for length in high - low]
+    edge = np.array([length for _, length in axes])
+    ticks = [low[k] + (np.arange(count) + 0.5) * edge[k] for k, (count, _) in enumerate(axes)]
+    cells = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
+    depth = depth_of(cells)
+    cells, depth = cells[depth < shell], depth[depth < shell]
+    deep = depth >= RELAXED * spacing
+    near = ~deep & (depth > -float(np.linalg.norm(edge)))
+    outer = _spread(cells[near], depth[near], edge, spacing, depth_of, *ROUGHLY)
+    inside = np.clip(outer.position, low, np.nextafter(high, low))
+    volume = np.concatenate([outer.volume, np.full(int(deep.sum()), np.prod(edge))])
+    return Samples(np.concatenate([inside, cells[deep]]), volume)
+
+
+def _spread(
+    cells: Array,
+    depth: Array,
+    edge: Array,
+    spacing: float,
+    depth_of: Callable[[Array], Array],
+    sweeps: int = SWEEPS,
+    fine: int = PIECES,
+) -> Samples:
     """Particles of the layers at a surface, spread along it.
 
     Args:
@@ -57,8 +95,10 @@ def _spread(cells: Array, depth: Array, edge: Array, spacing: float, depth_of: C
         edge: Of a cell [m], shape (3,).
         spacing: Thickness of a layer [m].
         depth_of: Depth of any points below the surface [m].
+        sweeps: Rounds of spreading.
+        fine: Pieces that a cell's edge is cut into.
     """
-    ticks = [((np.arange(PIECES) + 0.5) / PIECES - 0.5) * length for length in edge]
+    ticks = [((np.arange(fine) + 0.5) / fine - 0.5) * length for length in edge]
     corners = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
     pieces = (cells[:, None, :] + corners).reshape(-1, 3)
     below = depth_of(pieces)
@@ -70,13 +110,13 @@ def _spread(cells: Array, depth: Array, edge: Array, spacing: float, depth_of: C
         return Samples(np.zeros((0, 3)), np.zeros(0))
     seeds = np.column_stack([cells, far * np.floor(depth / spacing)])[depth > 0.0]
     seeds = _cover(seeds, pieces, spacing)
-    for _ in range(SWEEPS):
+    for _ in range(sweeps):
         nearest = cKDTree(seeds).query(pieces, workers=-1)[1]
         count = np.bincount(nearest, minlength=len(seeds))
         sums = np.stack([np.bincount(nearest, pieces[:, axis], len(seeds)) for axis in range(4)], axis=1)
         seeds, count = sums[count > 0] / count[count > 0, None], count[count > 0]
         seeds[:, :3] = _to_mid_depth(seeds[:, :3], spacing, depth_of)
-    return Samples(seeds[:, :3], count * np.prod(edge / PIECES))
+    return Samples(seeds[:, :3], count * np.prod(edge / fine))
 
 
 def _cover(seeds: Array, pieces: Array, spacing: float) -> Array:

@@ -1,4 +1,4 @@
-"""Particles that stand for what is flat and stands still: behind a container's walls, below a plane."""
+"""Particles that stand for the walls of a container."""
 
 from __future__ import annotations
 
@@ -35,16 +35,3 @@ def container_walls(inner_size: Array, spacing: float, support: float, sides: Ar
     keep = np.stack(np.meshgrid(*outside, indexing="ij"), axis=-1).reshape(-1, 3).any(axis=1)
     position = position[keep]
     return Samples(position, np.full(len(position), np.prod([edge for _, edge in axes])))
-
-
-def plane_patch(low: Array, high: Array, spacing: float, support: float, plane: bool = False) -> Samples:
-    """Layers below z = 0 over the rectangle from `low` to `high` [m], shape (2,) each; one metre deep if `plane`."""
-    size = np.asarray(high) - np.asarray(low)
-    axes = [lattice_axis(float(length), spacing) for length in size]
-    layers = max(1, round(support / spacing - 0.5))
-    ticks = [low[k] + (np.arange(count) + 0.5) * edge for k, (count, edge) in enumerate(axes)]
-    if plane:
-        axes[1], ticks[1] = (1, 1.0), np.zeros(1)
-    ticks.append(-(np.arange(layers) + 0.5) * spacing)
-    position = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
-    return Samples(position, np.full(len(position), axes[0][1] * axes[1][1] * spacing))

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 from wsim.geometry.filled import Samples, box_lattice, capsule_layers, cylinder_layers, sphere_layers
 from wsim.geometry.rotations import rotate
 from wsim.solvers.layers import mesh_layers
-from wsim.solvers.sampling import container_walls, plane_patch
+from wsim.solvers.sampling import container_walls
 from wsim.solvers.sph_config import ConfigSPH
 
 Array = np.ndarray
@@ -50,22 +50,21 @@ class OpenBox:
 
 @dataclass(frozen=True)
 class Boundary:
-    """Boundary particles of all worlds, those of one body next to each other, fixed ones first.
+    """Particles of the bodies of all worlds, those of one body next to each other.
 
-    `local` is in the owner's frame (the world's where owner is -1) [m]; `body_first[b]` is the first particle of
-    body b, and `body_first[-1]` the number of particles.
+    `local` is in the body's frame [m]; `first[b]` is the first particle of body b, and `first[-1]` their number.
     """
 
     local: Array  # (n, 3)
     volume: Array  # (n,)
-    owner: Array  # (n,) body, or -1
+    owner: Array  # (n,) body
     world: Array  # (n,)
-    body_first: Array  # (body_count + 1,)
+    first: Array  # (body_count + 1,)
 
     def crowd(self, reach: float) -> int:
         """Most particles of one body within `reach` [m] of any of its own: many, where its shapes overlap."""
         most = 0
-        for first, last in itertools.pairwise(self.body_first.tolist()):
+        for first, last in itertools.pairwise(self.first.tolist()):
             if last > first:
                 own = self.local[first:last]
                 most = max(most, int(cKDTree(own).query_ball_point(own, reach, return_length=True).max()))
@@ -102,87 +101,31 @@ def sample_shape(kind: int, scale: Array, source: Any, spacing: float, plane: bo
     return None
 
 
-def near_fluid(position: Array, fluid: Array, support: float) -> Array:
-    """Which samples of a fixed shape the fluid may reach: those within one fluid's length of it, seen from above."""
-    low, high = fluid.min(axis=0), fluid.max(axis=0)
-    reach = max(float((high - low).max()), support)
-    return ((position[:, :2] >= low[:2] - reach) & (position[:, :2] <= high[:2] + reach)).all(axis=1)
-
-
-def sample_boundary(
-    model: Any, config: ConfigSPH, containers: tuple[OpenBox, ...], fluid: Array, fluid_world: Array
-) -> Boundary:
-    """Sample every colliding shape of a model.
-
-    Ground planes are sampled under fluid that no container holds, out to one fluid's length around it.
+def sample_bodies(model: Any, config: ConfigSPH) -> Boundary:
+    """Sample every colliding shape of a model's bodies.
 
     Args:
         model: The `newton.Model`.
-        config: For the spacing, the kernel's support, dimensions and periodic axes.
-        containers: Tanks.
-        fluid: Fluid positions [m], shape (n, 3).
-        fluid_world: World of each fluid particle, shape (n,).
-
-    Raises:
-        ValueError: If a container is too narrow for the spacing.
+        config: For the spacing and the dimensions.
     """
-    walls = frozenset().union(*(c.shapes for c in containers)) if containers else frozenset()
     bodies, poses, kinds = model.shape_body.numpy(), model.shape_transform.numpy(), model.shape_type.numpy()
-    scales, flags, worlds = model.shape_scale.numpy(), model.shape_flags.numpy(), model.shape_world.numpy()
-    world_count = max(1, model.world_count)
-    fixed: list[list[tuple[Array, Array]]] = [[] for _ in range(world_count)]
+    scales, flags = model.shape_scale.numpy(), model.shape_flags.numpy()
     moving: list[list[tuple[Array, Array]]] = [[] for _ in range(model.body_count)]
-    plane = config.dimensions == 2
-
-    for box in containers:
-        piece = _sample_container(box, config)
-        for world in range(world_count) if box.world < 0 else (box.world,):
-            fixed[world].append(piece)
-
     for shape in range(model.shape_count):
-        if not flags[shape] & ShapeFlags.COLLIDE_SHAPES or model.shape_label[shape] in walls:
+        if bodies[shape] < 0 or not flags[shape] & ShapeFlags.COLLIDE_SHAPES:
             continue
-        homes = range(world_count) if worlds[shape] < 0 else [int(worlds[shape])]
-        if kinds[shape] == GeoType.PLANE:
-            for world in homes:
-                here = fluid[fluid_world == world]
-                if len(here) and not containers:
-                    reach = float((here.max(axis=0) - here.min(axis=0)).max())
-                    low, high = here.min(axis=0)[:2] - reach, here.max(axis=0)[:2] + reach
-                    for axis in (0, 1):
-                        ends = config.periodic[axis]
-                        low[axis], high[axis] = ends or (low[axis], high[axis])
-                    samples = plane_patch(low, high, config.spacing, config.support, plane)
-                    height = np.array([0.0, 0.0, poses[shape][2]])
-                    fixed[world].append((samples.position + height, samples.volume))
-            continue
-        found = sample_shape(int(kinds[shape]), scales[shape], model.shape_source[shape], config.spacing, plane)
+        kind, source = int(kinds[shape]), model.shape_source[shape]
+        found = sample_shape(kind, scales[shape], source, config.spacing, config.dimensions == 2)
         if found is None:
-            kind = GeoType(int(kinds[shape])).name
-            warnings.warn(f"SolverSPH: the fluid does not see {model.shape_label[shape]}, a {kind}", stacklevel=3)
+            name = GeoType(kind).name
+            warnings.warn(f"SolverSPH: the fluid does not see {model.shape_label[shape]}, a {name}", stacklevel=3)
             continue
         position = rotate(poses[shape][3:], found.position) + poses[shape][:3]
-        if bodies[shape] >= 0:
-            moving[bodies[shape]].append((position, found.volume))
-            continue
-        for world in homes:
-            here = fluid[fluid_world == world]
-            if len(here):
-                keep = near_fluid(position, here, config.support) & _in_period(position, config)
-                fixed[world].append((position[keep], found.volume[keep]))
-    return _join(fixed, moving, model.body_world.numpy() if model.body_count else np.zeros(0, int))
+        moving[bodies[shape]].append((position, found.volume))
+    return _join(moving, model.body_world.numpy() if model.body_count else np.zeros(0, int))
 
 
-def _in_period(position: Array, config: ConfigSPH) -> Array:
-    """Which positions are in the periodic box; what a fixed shape has beyond it is its own image."""
-    keep = np.ones(len(position), dtype=bool)
-    for axis, ends in enumerate(config.periodic):
-        if ends is not None:
-            keep &= (position[:, axis] >= ends[0]) & (position[:, axis] < ends[1])
-    return keep
-
-
-def _sample_container(box: OpenBox, config: ConfigSPH) -> tuple[Array, Array]:
+def sample_container(box: OpenBox, config: ConfigSPH) -> tuple[Array, Array]:
     """Walls of one tank, none along periodic axes and none across a plane."""
     plane = config.dimensions == 2
     open_axes = np.array([ends is not None for ends in config.periodic]) | np.array([False, plane, False])
@@ -198,19 +141,15 @@ def _sample_container(box: OpenBox, config: ConfigSPH) -> tuple[Array, Array]:
     return rotate(np.array(box.rotation), samples.position) + np.array(box.center), samples.volume
 
 
-def _join(fixed: list, moving: list, body_world: Array) -> Boundary:
-    """Fixed particles world by world, then those of each body."""
-    groups = [(p, v, -1, w) for w, pieces in enumerate(fixed) for p, v in pieces]
-    first = sum(len(p) for p, _, _, _ in groups)
-    body_first = [first]
-    for body, pieces in enumerate(moving):
-        groups += [(p, v, body, max(0, int(body_world[body]))) for p, v in pieces]
-        body_first.append(body_first[-1] + sum(len(p) for p, _ in pieces))
-    sizes = [len(p) for p, _, _, _ in groups]
+def _join(moving: list, body_world: Array) -> Boundary:
+    """The particles of each body after those of the one before."""
+    pieces = [(p, v, body) for body, own in enumerate(moving) for p, v in own]
+    sizes = [len(p) for p, _, _ in pieces]
+    owner = np.repeat([body for _, _, body in pieces], sizes).astype(np.int32)
     return Boundary(
-        local=np.concatenate([p for p, _, _, _ in groups]) if groups else np.zeros((0, 3)),
-        volume=np.concatenate([v for _, v, _, _ in groups]) if groups else np.zeros(0),
-        owner=np.repeat([o for _, _, o, _ in groups], sizes).astype(np.int32) if groups else np.zeros(0, np.int32),
-        world=np.repeat([w for _, _, _, w in groups], sizes).astype(np.int32) if groups else np.zeros(0, np.int32),
-        body_first=np.array(body_first, dtype=np.int32),
+        local=np.concatenate([p for p, _, _ in pieces]) if pieces else np.zeros((0, 3)),
+        volume=np.concatenate([v for _, v, _ in pieces]) if pieces else np.zeros(0),
+        owner=owner,
+        world=np.maximum(body_world[owner], 0).astype(np.int32),
+        first=np.searchsorted(owner, np.arange(len(moving) + 1)).astype(np.int32),
     )

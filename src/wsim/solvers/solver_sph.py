@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import newton
@@ -13,18 +14,21 @@ from newton.solvers import SolverBase
 from wsim.kernels.sph import boundary as boundary_kernels
 from wsim.kernels.sph import density as density_kernels
 from wsim.kernels.sph import grid as grid_kernels
-from wsim.kernels.sph.status import inspect
 from wsim.solvers.launch import launch_shared
-from wsim.solvers.shapes import OpenBox, sample_boundary
+from wsim.solvers.shapes import OpenBox, sample_bodies
 from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.sph_domain import domain_of
 from wsim.solvers.sph_faces import FixedFaces
-from wsim.solvers.sph_faults import in_words
+from wsim.solvers.sph_faults import in_words, inspected
+from wsim.solvers.sph_mouths import Drain, Tap
+from wsim.solvers.sph_openings import ROOM, Openings
 from wsim.solvers.sph_particles import SortedParticles
 from wsim.solvers.sph_push import BodyPush
 from wsim.solvers.sph_search import ParticleSearch
+from wsim.solvers.sph_solids import FixedSolids
+from wsim.solvers.sph_wall_impulse import LEAST_LANES, WallImpulse
 
-LEAST_LANES = 32
+VENTED = 0.5  # times c / h: pressure leaves by a void in the time in which sound crosses a kernel's support
 
 
 class SolverSPH(SolverBase):
@@ -45,9 +49,16 @@ class SolverSPH(SolverBase):
         model: The model to simulate; its particles are the fluid of every world.
         config: Settings of the method.
         containers: Tanks that hold the fluid.
+        taps: Where water comes in; the model's particles that are not `ParticleFlags.ACTIVE` wait for it. Make states
+            after the solver: it puts the first of them into the taps' pipes.
+        drains: Where water leaves.
+
+    Attributes:
+        openings: The taps and drains; None without any.
 
     Raises:
-        ValueError: If the model has no particles, the settings are out of range, or a container is too narrow.
+        ValueError: If the model has no particles, the settings are out of range, a container is too narrow, or too few
+            particles wait for the taps.
     """
 
     Config = ConfigSPH
@@ -71,7 +82,14 @@ class SolverSPH(SolverBase):
                 )
             )
 
-    def __init__(self, model: newton.Model, config: ConfigSPH, containers: tuple[OpenBox, ...] = ()) -> None:
+    def __init__(
+        self,
+        model: newton.Model,
+        config: ConfigSPH,
+        containers: tuple[OpenBox, ...] = (),
+        taps: Sequence[Tap] = (),
+        drains: Sequence[Drain] = (),
+    ) -> None:
         super().__init__(model)
         if model.particle_count == 0:
             raise ValueError("SolverSPH: the model has no particles; add the fluid to the builder first")
@@ -85,7 +103,11 @@ class SolverSPH(SolverBase):
         self.world_count = max(1, model.world_count)
         with wp.ScopedDevice(model.device):
             self._read_worlds()
-            self._sample_solids(containers)
+            world = np.maximum(model.particle_world.numpy(), 0)
+            self.openings = (
+                Openings(model, config, world, self.rest_density.numpy(), taps, drains) if taps or drains else None
+            )
+            self._sample_solids(containers, world)
             self._allocate()
             self.method = self._method()
 
@@ -97,6 +119,7 @@ class SolverSPH(SolverBase):
         method.speed_of_sound, method.diffusion = c.speed_of_sound, c.density_diffusion
         method.artificial_viscosity, method.laminar_factor = c.artificial_viscosity, c.laminar_factor
         method.background_pressure = c.background_pressure
+        method.vented = VENTED * c.speed_of_sound / h if self.openings else 0.0
         return method
 
     def _read_worlds(self) -> None:
@@ -120,54 +143,89 @@ class SolverSPH(SolverBase):
             with wp.ScopedDevice(self.model.device):
                 self._read_worlds()
 
-    def _sample_solids(self, containers: tuple[OpenBox, ...]) -> None:
-        """Fill the solids with particles, and bring walls and worlds into order."""
+    def _sample_solids(self, containers: tuple[OpenBox, ...], world: np.ndarray) -> None:
+        """Fill the solids with particles: bodies, and what stands still where the fluid is or comes to."""
         model = self.model
-        place, world = model.particle_q.numpy(), np.maximum(model.particle_world.numpy(), 0)
-        solids = sample_boundary(model, self.config, containers, place, world)
-        fixed = int(solids.body_first[0])
-        self.wall_count, self.body_particle_count = fixed, len(solids.local) - fixed
-        self.boundary_count = len(solids.local)
-        self.count = self.fluid_count + self.boundary_count
-        self.wall_position = wp.array(solids.local[:fixed], dtype=wp.vec3)
-        self.wall_volume = wp.array(solids.volume[:fixed], dtype=float)
-        self.body_local = wp.array(solids.local[fixed:], dtype=wp.vec3)
-        self.body_volume = wp.array(solids.volume[fixed:], dtype=float)
-        self.body_owner = wp.array(solids.owner[fixed:], dtype=int)
-        self.body_first = wp.array(solids.body_first - fixed, dtype=int)
+        self._fluid_world = world
+        place, home = model.particle_q.numpy(), world
+        if self.openings:
+            place, home = self.openings.known(place, world)
+        self.fixed = FixedSolids(model, self.config, containers)
+        self.fixed.start(place, home)
+        self.bodies = sample_bodies(model, self.config)
+        self.body_particle_count = len(self.bodies.local)
+        self.body_local = wp.array(self.bodies.local, dtype=wp.vec3)
+        self.body_volume = wp.array(self.bodies.volume, dtype=float)
+        self.body_owner = wp.array(self.bodies.owner, dtype=int)
+        self.body_first = wp.array(self.bodies.first, dtype=int)
         self.domain = domain_of(place, containers)
+        if self.openings:
+            self.domain = self.domain[0], self.domain[1] + ROOM * self.config.support
+        self.faces = FixedFaces(model, self.world_count, containers, self.config.support)
+        self._bring_into_order()
+
+    def _bring_into_order(self) -> None:
+        """Take the walls' particles, and search among all."""
+        position, volume, world = self.fixed.particles()
+        if self.openings:
+            keep = self.openings.outside(position, world)
+            position, volume, world = position[keep], volume[keep], world[keep]
+            self.openings.park_below(self.domain[0])
+        self.wall_count = len(position)
+        self.boundary_count = self.wall_count + self.body_particle_count
+        self.count = self.fluid_count + self.boundary_count
+        self.wall_position, self.wall_volume = wp.array(position, dtype=wp.vec3), wp.array(volume, dtype=float)
         self.search = ParticleSearch(
             self.config,
             self.domain,
+            self._fluid_world,
             world,
-            solids.world[:fixed],
-            solids.world[fixed:],
+            self.bodies.world,
             self.wall_position,
             self.world_count,
-            solids.crowd((1.0 + self.config.skin) * self.config.support),
+            self.bodies.crowd((1.0 + self.config.skin) * self.config.support),
+            self.openings.stage if self.openings else None,
         )
         self.programs = self.search.programs
-        self.faces = FixedFaces(model, self.world_count, containers)
+        still = wp.zeros(self.wall_count, dtype=wp.vec3)
+        self._gather_solid(self.search.walls, self.wall_position, still, self.wall_volume)
+        self._on_walls = wp.zeros(self.fluid_count if self.wall_count or self.faces.count else 0, dtype=wp.vec3)
 
     def _allocate(self) -> None:
-        bodies, walls = self.body_particle_count, self.search.walls
+        bodies = self.body_particle_count
         self.pressure = wp.empty(self.fluid_count, dtype=float)
         self.full = wp.zeros(self.fluid_count, dtype=float)
         self.body_position = wp.zeros(bodies, dtype=wp.vec3)
         self.body_velocity = wp.zeros(bodies, dtype=wp.vec3)
         self.push = BodyPush(self.search, self.body_owner)
-        self._gather_solid(walls, self.wall_position, wp.zeros(self.wall_count, dtype=wp.vec3), self.wall_volume)
         # As many lanes as each has particles of the largest body to add up, and add_body_wrench lanes.
         largest = int(np.diff(self.body_first.numpy()).max(initial=0))
         self.lanes = max(LEAST_LANES, math.isqrt(largest))
         self.lane_wrench = wp.zeros((self.model.body_count, self.lanes), dtype=wp.spatial_vector)
         self.body_wrench = wp.zeros(self.model.body_count, dtype=wp.spatial_vector)
-        self._on_walls = wp.zeros(self.fluid_count if self.wall_count else 0, dtype=wp.vec3)
-        first = self.search.fluid.world_first  # Newton's worlds follow one another
-        own = [max(LEAST_LANES, math.isqrt(count)) for count in np.diff(first).tolist()]
-        self._world_first, self._lanes_of_walls = wp.array(first, dtype=int), wp.array(own, dtype=int)
-        self._wall_lanes = wp.zeros((self.world_count, max(own)), dtype=wp.vec3d)
-        self._wall_impulse = wp.zeros(self.world_count, dtype=wp.vec3d)
+        self._wall_impulse = WallImpulse(self.search.fluid.world_first)
+
+    def follow(self, state: newton.State, seconds: float) -> bool:
+        """Lay particles of what stands still where the fluid may get within a time; call it as often, between steps.
+
+        Args:
+            state: The present state.
+            seconds: Until the next call [s].
+
+        Returns:
+            Whether there was anything to lay: graphs that captured a step are of no use any more.
+        """
+        if not self.fixed.anywhere:
+            return False
+        with wp.ScopedDevice(self.model.device):
+            self.search.restart()  # so that a world's sums do not go by when it, or another, was followed
+            if not self.fixed.ahead(state, seconds):
+                return False
+            place = self.fixed.particles()[0]
+            self.domain = np.minimum(self.domain[0], place.min(axis=0)), np.maximum(self.domain[1], place.max(axis=0))
+            self._bring_into_order()
+            self.push.look_among(self.search)
+        return True
 
     def reset_search(self) -> None:
         """Forget the neighbour lists, and the water in gaps; for a state that did not come from the last step."""
@@ -175,11 +233,16 @@ class SolverSPH(SolverBase):
         self.push.forget()
         self.full.zero_()
 
+    def restart(self) -> None:
+        """Begin anew, with a state from before the first step: what waits for taps waits again."""
+        self.reset_search()
+        self.take_wall_impulse()
+        if self.openings:
+            self.openings.restart()
+
     def take_wall_impulse(self) -> np.ndarray:
         """Impulse that each world's fluid gave to all that stands still since the last call, (W, 3) [N s]."""
-        impulse: np.ndarray = self._wall_impulse.numpy().astype(np.float64)
-        self._wall_impulse.zero_()
-        return impulse
+        return self._wall_impulse.take()
 
     def check(self, state: newton.State) -> int:
         """Look for what makes the fluid's state worthless; call it once in a while, as often as once a frame.
@@ -193,7 +256,7 @@ class SolverSPH(SolverBase):
         Raises:
             RuntimeError: If a value is not finite, a particle is faster than sound, or a neighbour list overflowed.
         """
-        broken, speeds, outside = self._inspected(state)
+        broken, speeds, outside = inspected(self.search, state)
         fault = next(filter(None, self._faults(broken, speeds)), None)
         if fault:
             raise RuntimeError(fault)
@@ -201,27 +264,8 @@ class SolverSPH(SolverBase):
 
     def faults(self, state: newton.State) -> list[str]:
         """What makes each world's fluid worthless, (W,) texts; empty where it is sound. The others are as they are."""
-        broken, speeds, _ = self._inspected(state)
+        broken, speeds, _ = inspected(self.search, state)
         return self._faults(broken, speeds)
-
-    def _inspected(self, state: newton.State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of each world the first particle that is not finite, the largest speed [m/s], and how many are outside."""
-        with wp.ScopedDevice(self.model.device):
-            broken = wp.full(self.world_count, self.fluid_count, dtype=int)
-            fastest2, outside = wp.zeros(self.world_count, dtype=float), wp.zeros(self.world_count, dtype=int)
-            wp.launch(
-                inspect,
-                dim=self.fluid_count,
-                inputs=[
-                    self.search.grid,
-                    self.search.fluid.world,
-                    state.particle_q,
-                    state.particle_qd,
-                    state.sph.pressure,
-                ],
-                outputs=[broken, fastest2, outside],
-            )
-        return broken.numpy(), np.sqrt(fastest2.numpy()), outside.numpy()
 
     def _faults(self, broken: np.ndarray, speeds: np.ndarray) -> list[str]:
         found = zip(broken.tolist(), speeds.tolist(), self.search.crowd(), strict=True)
@@ -353,28 +397,17 @@ class SolverSPH(SolverBase):
             inputs=[*method, self.model.gravity, fluid, walls, bodies, self.model.particle_mass, dt],
             outputs=[state_out.particle_q, state_out.particle_qd, self._on_walls],
         )
-        if self.wall_count:
-            if self.faces.count and self.config.dimensions == 3:
-                at = state_out.particle_q, state_out.particle_qd
-                self.faces.keep_out(self.search.fluid.world, dt, *at, self._on_walls)
-            self._add_to_walls(self._on_walls, self._world_first, dt)
+        if self.openings:
+            self.openings.take_in(search.fluid.world, state_out.particle_q)
+        if len(self._on_walls) and self.faces.count and self.config.dimensions == 3:
+            at = state_out.particle_q, state_out.particle_qd
+            self.faces.keep_out(search.fluid.world, dt, *at, self._on_walls)
+        if self.openings:
+            self.openings.lead(search.fluid, state_out, self._on_walls, dt)
+        if len(self._on_walls):
+            self._wall_impulse.add(self._on_walls, dt)
             if self.body_particle_count:
-                self._add_to_walls(self.push.on_walls, self.push.world_first, dt)
-
-    def _add_to_walls(self, force: wp.array, world_first: wp.array, dt: float) -> None:
-        """Add particles' forces on the walls, in the order of worlds, to the impulse on each world's."""
-        wp.launch(
-            boundary_kernels.sum_wall_lanes,
-            dim=self._wall_lanes.shape,
-            inputs=[force, world_first, self._lanes_of_walls],
-            outputs=[self._wall_lanes],
-        )
-        wp.launch(
-            boundary_kernels.add_wall_impulse,
-            dim=self.world_count,
-            inputs=[self._wall_lanes, dt],
-            outputs=[self._wall_impulse],
-        )
+                self._wall_impulse.add(self.push.on_walls, dt, self.push.world_first)
 
     def _return_wrenches(self, state_in: newton.State, state_out: newton.State) -> None:
         if not self.body_particle_count:

@@ -1,4 +1,4 @@
-"""Planes and boxes that stand still, as faces that no fluid gets behind (`wsim.kernels.sph.faces`)."""
+"""All that stands still, as faces that no fluid gets behind (`wsim.kernels.sph.faces`)."""
 
 from __future__ import annotations
 
@@ -10,12 +10,15 @@ import warp as wp
 from newton import GeoType, ShapeFlags
 
 from wsim.geometry.rotations import rotate
-from wsim.kernels.sph.faces import keep_out
+from wsim.kernels.sph.faces import Faces, keep_out
+from wsim.solvers.inside import solid_of
 from wsim.solvers.shapes import OpenBox
 
 Array = np.ndarray
 SUNK = 1e-4  # [m] under a plane, at least, of the floor of a tank that is sunk into it
 CORNERS = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+ROUND = (GeoType.SPHERE, GeoType.CAPSULE, GeoType.CYLINDER)
+MESHES = (GeoType.MESH, GeoType.CONVEX_MESH)
 
 
 class FixedFaces:
@@ -24,41 +27,81 @@ class FixedFaces:
     A plane that a tank is sunk into is none: its water would stand behind it.
 
     Args:
-        model: The `newton.Model`, whose planes and boxes that collide and belong to no body are taken.
+        model: The `newton.Model`, whose shapes that collide and belong to no body are taken.
         world_count: W.
         containers: Tanks of all worlds.
+        reach: How deep in a mesh a particle is still put back [m]; more than it goes in a step.
     """
 
-    def __init__(self, model: Any, world_count: int, containers: Sequence[OpenBox]) -> None:
+    def __init__(self, model: Any, world_count: int, containers: Sequence[OpenBox], reach: float) -> None:
         self._model, self._world_count = model, world_count
-        floors = np.full(world_count, np.inf)  # of the lowest hollow in each
+        kinds, scales = model.shape_type.numpy(), model.shape_scale.numpy().astype(float)
+        self._poses = model.shape_transform.numpy().astype(float)
+        fixed = ((model.shape_flags.numpy() & ShapeFlags.COLLIDE_SHAPES) != 0) & (model.shape_body.numpy() < 0)
+        self._faces: Any = Faces()
+        self._faces.reach = reach
+        self.count = (
+            self._take_planes(fixed & (kinds == GeoType.PLANE) & (scales[:, :2] == 0.0).all(axis=1), containers)
+            + self._take_boxes(self._homes(fixed & (kinds == GeoType.BOX)), scales)
+            + self._take_rounds(self._homes(fixed & np.isin(kinds, ROUND)), kinds, scales)
+            + self._take_meshes(self._homes(fixed & np.isin(kinds, MESHES)), kinds, scales)
+        )
+
+    def _take_planes(self, endless: Array, containers: Sequence[OpenBox]) -> int:
+        floors = np.full(self._world_count, np.inf)  # of the lowest hollow in each
         for box in containers:
             some = slice(None) if box.world < 0 else box.world
             floors[some] = np.minimum(floors[some], box.floor)
-        kinds, poses = model.shape_type.numpy(), model.shape_transform.numpy().astype(float)
-        halves = model.shape_scale.numpy().astype(float)
-        collides = (model.shape_flags.numpy() & ShapeFlags.COLLIDE_SHAPES) != 0
-        fixed = collides & (model.shape_body.numpy() < 0)
-        normals = rotate(poses[:, 3:], np.array([[0.0, 0.0, 1.0]])) if len(poses) else np.zeros((0, 3))
-        heights = (normals * poses[:, :3]).sum(axis=1)
-        endless = (kinds == GeoType.PLANE) & (halves[:, :2] == 0.0).all(axis=1)
+        normals = rotate(self._poses[:, 3:], np.array([[0.0, 0.0, 1.0]])) if len(self._poses) else np.zeros((0, 3))
+        heights = (normals * self._poses[:, :3]).sum(axis=1)
         sunk = (normals[:, 2] > 0.99)[None] & (floors[:, None] < heights[None] - SUNK)
-        planes = [(w, k) for w, k in self._homes(fixed & endless) if not sunk[w, k]]
-        boxes = self._homes(fixed & (kinds == GeoType.BOX))
-        self._planes = (
-            self._first(planes),
-            wp.array(np.array([[*normals[k], heights[k]] for _, k in planes]).reshape(-1, 4), dtype=wp.vec4),
-        )
+        planes = [(w, k) for w, k in self._homes(endless) if not sunk[w, k]]
+        self._faces.plane_first = self._first(planes)
+        levels = np.array([[*normals[k], heights[k]] for _, k in planes]).reshape(-1, 4)
+        self._faces.plane = wp.array(levels, dtype=wp.vec4)
+        return len(planes)
+
+    def _take_boxes(self, boxes: list[tuple[int, int]], halves: Array) -> int:
         which = [k for _, k in boxes]
-        corners = np.array([rotate(poses[k, 3:], CORNERS * halves[k]) + poses[k, :3] for k in which]).reshape(-1, 8, 3)
-        self._boxes = (
-            self._first(boxes),
-            wp.array(poses[which].reshape(-1, 7), dtype=wp.transform),
-            wp.array(halves[which].reshape(-1, 3), dtype=wp.vec3),
-            wp.array(corners.min(axis=1, initial=np.inf), dtype=wp.vec3),
-            wp.array(corners.max(axis=1, initial=-np.inf), dtype=wp.vec3),
-        )
-        self.count = len(planes) + len(boxes)
+        corners = np.array([self._placed(k, CORNERS * halves[k]) for k in which]).reshape(-1, 8, 3)
+        self._faces.box_first, self._faces.box = self._first(boxes), self._poses_of(which)
+        self._faces.box_half = wp.array(halves[which].reshape(-1, 3), dtype=wp.vec3)
+        self._faces.box_low = wp.array(corners.min(axis=1, initial=np.inf), dtype=wp.vec3)
+        self._faces.box_high = wp.array(corners.max(axis=1, initial=-np.inf), dtype=wp.vec3)
+        return len(boxes)
+
+    def _take_rounds(self, rounds: list[tuple[int, int]], kinds: Array, scales: Array) -> int:
+        which = [k for _, k in rounds]
+        straight = np.where(kinds[which] == GeoType.SPHERE, 0.0, scales[which, 1])
+        sizes = np.stack([scales[which, 0], straight, kinds[which] == GeoType.CYLINDER], axis=1)
+        self._faces.round_first, self._faces.round = self._first(rounds), self._poses_of(which)
+        self._faces.round_size = wp.array(sizes.reshape(-1, 3), dtype=wp.vec3)
+        return len(rounds)
+
+    def _take_meshes(self, meshes: list[tuple[int, int]], kinds: Array, scales: Array) -> int:
+        self._meshes: dict[tuple[Any, ...], wp.Mesh] = {}  # by what they are made of: worlds share them
+        ids, ends = [], []
+        for _, k in meshes:
+            source, convex = self._model.shape_source[k], kinds[k] == GeoType.CONVEX_MESH
+            vertices = np.asarray(source.vertices, dtype=float).reshape(-1, 3) * scales[k]
+            key = id(source), convex, *scales[k].tolist()
+            if key not in self._meshes:
+                self._meshes[key] = _closed(vertices, np.asarray(source.indices).reshape(-1, 3), bool(convex))
+            ids.append(self._meshes[key].id)
+            placed = self._placed(k, vertices)
+            ends.append((placed.min(axis=0), placed.max(axis=0)))
+        self._faces.mesh_first, self._faces.mesh_pose = self._first(meshes), self._poses_of([k for _, k in meshes])
+        self._faces.mesh = wp.array(np.array(ids, dtype=np.uint64), dtype=wp.uint64)
+        self._faces.mesh_low = wp.array(np.array([low for low, _ in ends]).reshape(-1, 3), dtype=wp.vec3)
+        self._faces.mesh_high = wp.array(np.array([high for _, high in ends]).reshape(-1, 3), dtype=wp.vec3)
+        return len(meshes)
+
+    def _placed(self, k: int, points: Array) -> Array:
+        """Points of a shape in the world."""
+        return np.asarray(rotate(self._poses[k, 3:], points) + self._poses[k, :3])
+
+    def _poses_of(self, which: list[int]) -> wp.array:
+        return wp.array(self._poses[which].reshape(-1, 7), dtype=wp.transform)
 
     def _homes(self, wanted: Array) -> list[tuple[int, int]]:
         """World and shape of each that is wanted, world by world; what has none of its own stands in all."""
@@ -78,6 +121,13 @@ class FixedFaces:
         wp.launch(
             keep_out,
             dim=len(position),
-            inputs=[worlds, self._model.particle_mass, *self._planes, *self._boxes, dt],
+            inputs=[worlds, self._model.particle_mass, self._faces, dt],
             outputs=[position, velocity, on_walls],
         )
+
+
+def _closed(vertices: Array, triangles: Array, convex: bool) -> wp.Mesh:
+    """The solid that a mesh stands for, for the kernel to ask."""
+    solid = solid_of(vertices, triangles, convex)
+    corners = wp.array(np.asarray(solid.vertices), dtype=wp.vec3)
+    return wp.Mesh(corners, wp.array(np.asarray(solid.faces).reshape(-1), dtype=int), support_winding_number=True)

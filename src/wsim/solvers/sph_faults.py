@@ -4,6 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+import newton
+import numpy as np
+import warp as wp
+
+from wsim.kernels.sph.status import inspect
+from wsim.solvers.sph_search import ParticleSearch
+
+
+def inspected(search: ParticleSearch, state: newton.State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of each world the first particle that is not finite, the largest speed [m/s], and how many are outside."""
+    count, worlds, fluid = search.fluid.count, search.world_count, search.fluid
+    with wp.ScopedDevice(state.particle_q.device):
+        broken = wp.full(worlds, count, dtype=int)
+        fastest2, outside = wp.zeros(worlds, dtype=float), wp.zeros(worlds, dtype=int)
+        wp.launch(
+            inspect,
+            dim=count,
+            inputs=[search.grid, fluid.world, state.particle_q, state.particle_qd, state.sph.pressure, fluid.stage],
+            outputs=[broken, fastest2, outside],
+        )
+    return broken.numpy(), np.sqrt(fastest2.numpy()), outside.numpy()
+
 
 def in_words(found: Iterable[tuple[int, float, int]], count: int, sound: float, room: int) -> list[str]:
     """Of each world a text that says what to change, empty where its fluid is sound.

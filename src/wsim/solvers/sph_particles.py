@@ -21,6 +21,7 @@ class SortedParticles:
         world_count: Number of worlds.
         capacity: Neighbours that a list has room for; 0 where cells are walked.
         kind: `FLUID`, `WALLS` or `BODIES`.
+        stage: Of each, where some may be parked (`wsim.kernels.sph.openings`).
 
     Attributes:
         count: Number of particles n.
@@ -32,18 +33,28 @@ class SortedParticles:
         species: What kernels take.
     """
 
-    def __init__(self, world: np.ndarray, grid: Any, world_count: int, capacity: int, kind: int) -> None:
+    def __init__(
+        self,
+        world: np.ndarray,
+        grid: Any,
+        world_count: int,
+        capacity: int,
+        kind: int,
+        stage: wp.array | None = None,
+    ) -> None:
         n = self.count = len(world)
         cells = cells_of(grid) * world_count if n else 0
         self.grid, self.cells_per_world = grid, cells_of(grid)
         self.key_bits = max(1, cells.bit_length())
         self.world_first = np.append(0, np.cumsum(np.bincount(world, minlength=world_count))).tolist()
         self.world = wp.array(world.astype(np.int32), dtype=int)
+        self.stage = wp.empty(0, dtype=int) if stage is None else stage
         self.key, self.value = wp.empty(2 * n, dtype=int), wp.empty(2 * n, dtype=int)
         # Where all worlds are sorted together the sort works on the order itself.
         apart = world_count > 1 and capacity > 0
         self.order = wp.empty(n, dtype=int) if apart or n == 0 else self.value[:n]
-        self.order.assign(np.argsort(world, kind="stable").astype(np.int32))
+        self._own_order = wp.array(np.argsort(world, kind="stable").astype(np.int32), dtype=int)
+        self.restart()
         self.cell_count, self.cell_start = wp.zeros(cells + 1, dtype=int), wp.zeros(cells + 1, dtype=int)
         self.point, self.motion = wp.zeros(n, dtype=wp.vec4), wp.zeros(n, dtype=wp.vec4)
         # Made here: a first step may be captured in a CUDA graph, which would keep what is made in it to itself.
@@ -58,6 +69,10 @@ class SortedParticles:
         self.species.cell_start, self.species.near = self.cell_start, self.near
         self.species.entry, self.species.capacity = wp.empty(n * capacity, dtype=int), capacity
         self.species.entry_count = wp.zeros(n if capacity else 0, dtype=wp.vec3i)
+
+    def restart(self) -> None:
+        """Forget how they were sorted: the next sort starts from their own order, world by world."""
+        wp.copy(self.order, self._own_order)
 
     def sort(self, position: wp.array, first_world: int, last_world: int) -> None:
         """Sort the particles of some worlds by cell; the sort is stable, so that a run repeats bit for bit.
@@ -76,7 +91,7 @@ class SortedParticles:
         wp.launch(
             grid_kernels.assign_cells,
             dim=last - first,
-            inputs=[first, self.grid, self.order, position, self.world],
+            inputs=[first, self.grid, self.order, position, self.world, self.stage],
             outputs=[self.key, self.value, self.cell_count],
         )
         wp.utils.array_scan(counted, start, inclusive=False)

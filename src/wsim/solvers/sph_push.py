@@ -27,11 +27,16 @@ class BodyPush:
     """
 
     def __init__(self, search: ParticleSearch, owner: wp.array) -> None:
-        self._search, self._owner = search, owner
+        self._owner = owner
         self.force = wp.zeros(len(owner), dtype=wp.vec3)
-        self.on_walls = wp.zeros(len(owner) if search.walls.count else 0, dtype=wp.vec3)
         self.world_first = wp.array(search.bodies.world_first, dtype=int)
         self.handed = wp.full(len(owner), wp.vec3(DRY, 0.0, 1.0), dtype=wp.vec3)
+        self.look_among(search)
+
+    def look_among(self, search: ParticleSearch) -> None:
+        """Take another search for the same bodies, among other walls; gaps stay as wet as they are."""
+        self._search = search
+        self.on_walls = wp.zeros(len(self._owner) if search.walls.count else 0, dtype=wp.vec3)
 
     def forget(self) -> None:
         """Let the gaps be dry, until water gets there."""

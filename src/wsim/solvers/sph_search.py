@@ -35,6 +35,7 @@ class ParticleSearch:
         wall_position: Where the walls' particles are [m].
         world_count: Number of worlds.
         crowd: Most particles of its own body that any has within reach.
+        stage: Of each fluid particle, where some may be parked.
 
     Attributes:
         fluid, walls, bodies: The particles of each kind.
@@ -51,6 +52,7 @@ class ParticleSearch:
         wall_position: wp.array,
         world_count: int,
         crowd: int,
+        stage: wp.array | None = None,
     ) -> None:
         self.cuda = wall_position.device.is_cuda
         self.skin = 0.0 if self.cuda else config.skin * config.support
@@ -58,8 +60,12 @@ class ParticleSearch:
         self.grid = make_grid(config, *domain, config.support + self.skin, self.cuda, world_count)
         capacity = 0 if self.cuda else _capacity(config, self.grid.support)
         self.fluid, self.walls, self.bodies = (
-            SortedParticles(world, self.grid, world_count, capacity and capacity + more, kind)
-            for world, more, kind in ((fluid_world, 0, FLUID), (wall_world, 0, WALLS), (body_world, crowd, BODIES))
+            SortedParticles(world, self.grid, world_count, capacity and capacity + more, kind, own)
+            for world, more, kind, own in (
+                (fluid_world, 0, FLUID, stage),
+                (wall_world, 0, WALLS, None),
+                (body_world, crowd, BODIES, None),
+            )
         )
         self.moving = [kind for kind in (self.fluid, self.bodies) if kind.count]
         self.solid = [kind for kind in (self.walls, self.bodies) if kind.count]
@@ -77,6 +83,12 @@ class ParticleSearch:
         self.overflow = wp.zeros(world_count, dtype=int)
         self.point_at_build = [wp.zeros(0 if self.cuda else kind.count, dtype=wp.vec4) for kind in self.moving]
         self.move2 = wp.zeros(world_count, dtype=float)
+
+    def restart(self) -> None:
+        """Begin from the particles' own order, as a search that is made anew does."""
+        for kind in self.moving:
+            kind.restart()
+        self.stale = True
 
     def crowd(self) -> np.ndarray:
         """The most neighbours that found no room in a list of each world, (W,): a fluid that collapsed."""

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from wsim.plan.schema import Joint, Plan, PlanObject, Vec3
 
 Part = Literal[
-    "all", "objects", "relations", "joints", "cords", "contacts", "schedules", "cameras", "objectives", "assumptions",
-    "steps",
+    "all", "objects", "relations", "joints", "cords", "contacts", "schedules", "openings", "cameras", "objectives",
+    "assumptions", "steps",
 ]  # fmt: skip
 SIDE_NAME = "plan.json.new"
 
@@ -95,6 +95,7 @@ def _show(plan: Plan, part: Part, name: str) -> list[str]:
         "cords": _cords,
         "contacts": _contacts,
         "schedules": _schedules,
+        "openings": _openings,
         "cameras": _cameras,
         "assumptions": _assumptions,
         "steps": _steps,
@@ -103,7 +104,17 @@ def _show(plan: Plan, part: Part, name: str) -> list[str]:
         return parts[part](plan, name) or [f"no {part}" + (f" that name {name}" if name else "")]
     run = plan.simulation
     lines = [f"{plan.title}: {number(run.duration)} s at {number(run.frame_rate)} frames/s", *_picture(plan)]
-    for key in ("objects", "relations", "objectives", "joints", "cords", "contacts", "schedules", "cameras"):
+    for key in (
+        "objects",
+        "relations",
+        "objectives",
+        "joints",
+        "cords",
+        "contacts",
+        "schedules",
+        "openings",
+        "cameras",
+    ):
         lines += parts[key](plan, name)
     rest = [f"{len(rows)} {key}" for key, rows in (("assumptions", plan.assumptions), ("steps", plan.steps)) if rows]
     if not name:
@@ -235,6 +246,15 @@ def _contacts(plan: Plan, name: str) -> list[str]:
         if _about(name, each.object, each.ref)
     ]
     return table(("contact of", "and", "friction", "restitution", "rolling"), rows) if rows else []
+
+
+def _openings(plan: Plan, name: str) -> list[str]:
+    rows = [
+        [each.name, each.kind, each.fluid, each.at or "", numbers(each.offset), number(each.rate)]
+        for each in plan.openings
+        if _about(name, each.name, each.fluid, each.at or "")
+    ]
+    return table(("opening", "kind", "fluid", "at", "from there [m]", "rate [m^3/s]"), rows) if rows else []
 
 
 def _schedules(plan: Plan, name: str) -> list[str]:

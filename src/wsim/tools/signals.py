@@ -207,7 +207,9 @@ def _fluid(evidence: Evidence, i: int) -> Fluid:
 def _level(evidence: Evidence, i: int) -> Values:
     """Height of the surface: that of the fluid's median column, seen from above (T,)."""
     fluid = _fluid(evidence, i)
-    return np.array([_surface(points, fluid.spacing) for points in evidence.track(fluid).position.astype(np.float64)])
+    track = evidence.track(fluid)
+    frames = (points[track.there(k)].astype(np.float64) for k, points in enumerate(track.position))
+    return np.array([_surface(points, fluid.spacing) if len(points) else np.nan for points in frames])
 
 
 def _surface(points: Values, spacing: float) -> float:
@@ -221,17 +223,18 @@ def _surface(points: Values, spacing: float) -> float:
 
 def _fastest(evidence: Evidence, i: int) -> Values:
     velocity = evidence.track(_fluid(evidence, i)).velocity.astype(np.float64)
-    return np.linalg.norm(velocity, axis=2).max(axis=1)
+    return np.nan_to_num(np.linalg.norm(velocity, axis=2)).max(axis=1)
 
 
 def _density_error(evidence: Evidence, i: int) -> Values:
     fluid = _fluid(evidence, i)
-    return np.abs(evidence.track(fluid).density.astype(np.float64) / fluid.density - 1.0).mean(axis=1)
+    track = evidence.track(fluid)
+    return track.mean(np.abs(track.density.astype(np.float64) / fluid.density - 1.0))
 
 
 FLUID = {
     "level": _Kind("m", _level),
-    "center": _Kind("m", lambda e, i: e.track(_fluid(e, i)).position.astype(np.float64).mean(axis=1), XYZ),
+    "center": _Kind("m", lambda e, i: e.track(_fluid(e, i)).mean(e.track(_fluid(e, i)).position), XYZ),
     "fastest": _Kind("m/s", _fastest),
     "outside": _Kind("share", lambda e, i: e.outside(_fluid(e, i))),
     "density_error": _Kind("share", _density_error),

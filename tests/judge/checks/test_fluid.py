@@ -79,6 +79,18 @@ def test_a_fluid_is_of_the_plans_density(pool, density, passes):
     assert density == 1000.0 or CheckPlanFluid().evaluate(Evidence(varied.recording, case.plan)) == []
 
 
+@pytest.mark.parametrize(("speed", "passes"), [(2.0, True), (2.09, True), (0.0, False), (-2.0, False)])
+def test_a_fluid_starts_at_the_plans_velocity(pool, speed, passes):
+    case = pool()
+    case = case.world(fluids=[case.recording.world.fluids[0].model_copy(update={"velocity": (speed, 0.0, 0.0)})])
+    water = next(item for item in case.plan.objects if item.primitive == "fluid")
+    others = [item for item in case.plan.objects if item is not water]
+    thrown = water.model_copy(update={"velocity": (2.0, 0.0, 0.0)})
+    plan = case.plan.model_copy(update={"objects": [thrown, *others]})
+    finding = only(CheckPlanFluid().evaluate(Evidence(case.recording, plan)))
+    assert finding.passed == passes and (passes or finding.target.vector == (2.0, 0.0, 0.0))
+
+
 @pytest.mark.parametrize(("spacings", "passes"), [(0.0, True), (0.4, True), (0.6, False), (-0.6, False), (2.0, False)])
 def test_a_fluid_is_filled_to_the_plans_level(pool, spacings, passes):
     right = pool()

@@ -66,8 +66,8 @@ WRONG: dict[str, tuple[dict[str, Any], str]] = {
         r"objectives\.0: fills box, which is a solid box and has no hollow; name a tank, or a vessel of the catalogue",
     ),
     "a size that the surface overrides": (
-        {"objects": [TANK, {**WATER, "size": [0.5, 1, 0.6], "relations": IN_TANK}], "objectives": [INSIDE]},
-        r"objects\.2\.construction\.size: 0\.5 x 1 x 0\.6 m of water, which FREE-SURFACE-AT and tank make 1 x 1 x 0\.6",
+        {"objects": [TANK, {**WATER, "size": [0.5, 1, 0.5], "relations": IN_TANK}], "objectives": [INSIDE]},
+        r"objects\.2\.construction\.size: 0\.5 x 1 x 0\.5 m of water, which its level and tank make 1 x 1 x 0\.6",
     ),
     "an upright door": (
         {"objects": [POST, DOOR], "objectives": [formula("upright(door, 10 deg)", "door")], "joints": [HINGE]},

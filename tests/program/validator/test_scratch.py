@@ -4,7 +4,7 @@ import inspect
 
 import pytest
 
-from wsim.program.validator.scratch import _NEEDS, BODIES, CORDS, OBJECTS, SENSORS
+from wsim.program.validator.scratch import _NEEDS, BODIES, CORDS, OBJECTS, OPENINGS, SENSORS
 from wsim.scene import Scene, SceneError
 
 CALLS = {
@@ -27,7 +27,8 @@ def test_of_each_call_it_is_known_what_it_needs():
     assert not missing, f"say in _NEEDS of program/validator/scratch.py what a good call of {missing} has"
     made = {name for name, takes in CALLS.items() if "name" in takes and not name.startswith("joint_")}
     missing = sorted(
-        made - {*OBJECTS, *CORDS, *SENSORS, "gear", "policy", "schedule", "camera", "light", "material", "param"}
+        made
+        - {*OBJECTS, *CORDS, *SENSORS, *OPENINGS, "gear", "policy", "schedule", "camera", "light", "material", "param"}
     )
     assert not missing, f"name {missing} in OBJECTS of program/validator/scratch.py, or beside them in its `call`"
 

@@ -6,7 +6,6 @@ simulator that takes its own sums keeps them to rounding, so what is left tells 
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -49,8 +48,7 @@ def fluid_impulse(recording: Recording) -> Floats | None:
 
 def particle_mass(fluid: Fluid) -> float:
     """Of each of a fluid's particles, which stand for a cell of the lattice that fills its box [kg]."""
-    cells = math.prod(max(1, round(length / fluid.spacing)) for length in fluid.size)
-    return fluid.density * math.prod(fluid.size) / cells
+    return fluid.density * fluid.cell
 
 
 def fluid_books(evidence: Evidence) -> FluidBooks | None:
@@ -75,18 +73,45 @@ def fluid_books(evidence: Evidence) -> FluidBooks | None:
         sizes += np.linalg.norm(gained, axis=1)
         given += gained if n else 0.0
     walls = np.diff(np.cumsum(parts[0], axis=0)[frames], axis=0)
-    momentum, amount, mass = np.zeros((len(frames), 3)), np.zeros(len(frames)), 0.0
+    openings = _of_openings(evidence, frames)
+    if openings is None:
+        return None
+    momentum, amount, mass = np.zeros((len(frames), 3)), np.zeros(len(frames)), np.zeros(len(frames))
     for fluid, track in zip(fluids, tracks, strict=True):
         own = particle_mass(fluid)
         velocity = track.velocity.astype(np.float64)
-        momentum += own * velocity.sum(axis=1)
-        amount += own * np.abs(velocity).sum(axis=(1, 2))
-        mass += own * velocity.shape[1]
-    weight = mass * evidence.motion.gravity * np.diff(evidence.time[frames])[:, None]
+        momentum += own * np.nansum(velocity, axis=1)
+        amount += own * np.nansum(np.abs(velocity), axis=(1, 2))
+        mass += own * track.count
+    h = np.diff(evidence.time[frames])
+    weight = (mass[1:] + mass[:-1])[:, None] / 2.0 * evidence.motion.gravity * h[:, None]
+    # When within an interval particles came or went is not told: how long gravity had them is not known better.
+    between = (openings.moved + np.abs(np.diff(mass))) * evidence.gravity * h
     return FluidBooks(
         evidence.time[frames],
-        np.diff(momentum, axis=0) - weight + given + walls,
-        sizes + np.linalg.norm(weight, axis=1),
-        FLOAT32 * (amount[1:] + amount[:-1]),
+        np.diff(momentum, axis=0) - weight + given + walls - openings.impulse,
+        sizes + np.linalg.norm(weight, axis=1) + np.linalg.norm(openings.impulse, axis=1),
+        FLOAT32 * (amount[1:] + amount[:-1]) + between,
         given,
     )
+
+
+@dataclass(frozen=True)
+class _Opened:
+    """What taps and drains did in K intervals."""
+
+    impulse: Floats  # (K, 3) that they gave to the fluids [N s]
+    moved: Floats  # (K,) mass that came and went [kg]
+
+
+def _of_openings(evidence: Evidence, frames: NDArray[np.intp]) -> _Opened | None:
+    """What taps and drains did between frames, nothing where there are none; None where it is not recorded."""
+    world, scalars = evidence.world, evidence.recording.scalars
+    if not world.taps and not world.drains:
+        return _Opened(np.zeros((len(frames) - 1, 3)), np.zeros(len(frames) - 1))
+    names = [f"fluid/opening_impulse_{axis}" for axis in "xyz"] + ["fluid/mass_in", "fluid/mass_out"]
+    if any(name not in scalars for name in names):
+        return None
+    given = np.cumsum(np.stack([scalars[name] for name in names[:3]], axis=1), axis=0)
+    moved = scalars["fluid/mass_in"] + scalars["fluid/mass_out"]
+    return _Opened(np.diff(given[frames], axis=0), np.diff(moved[frames]))

@@ -14,6 +14,7 @@ from wsim.judge.language.kinds import formula_of
 from wsim.judge.language.objective import ObjectiveCheck, conjuncts
 from wsim.judge.verdict import RepairTarget
 from wsim.plan.schema.formula import Eventually, Predicate, Then
+from wsim.recording.recording import with_company
 from wsim.scene.labels import object_of
 
 if TYPE_CHECKING:
@@ -264,8 +265,9 @@ def _points(evidence: Evidence, frames: NDArray[np.intp]) -> list[Floats]:
     for fluid in evidence.world.fluids:
         track = evidence.track(fluid)
         at = np.abs(track.time[None] - evidence.time[frames, None]).argmin(axis=1)
-        some = track.position[at, :: max(1, track.position.shape[1] // 100)]
-        found.append(np.asarray(some, dtype=np.float64))
+        some = slice(None, None, max(1, track.position.shape[1] // 100))
+        there = None if track.present is None else track.present[at, some]
+        found.append(with_company(np.asarray(track.position[at, some], dtype=np.float64), there))
     return found
 
 

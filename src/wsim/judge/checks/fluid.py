@@ -34,11 +34,11 @@ class CheckFluidMass(Check):
         return [self._mass(evidence, fluid) for fluid in evidence.world.fluids]
 
     def _mass(self, evidence: Evidence, fluid: Fluid) -> Finding:
-        count = evidence.track(fluid).position.shape[1]
-        cells = math.prod(max(1, round(length / fluid.spacing)) for length in fluid.size)
+        track = evidence.track(fluid)
+        count = int(track.count[0]) if len(track.time) else 0
         volume = math.prod(fluid.size)
         inside = sum(self._drowned(evidence, fluid, i) for i in range(len(evidence.world.bodies)))
-        value = fluid.density * volume * count / cells
+        value = fluid.density * fluid.cell * count
         expected = fluid.density * max(volume - inside, 0.0)
         # A body pushes out the particles whose centres are in it or near: up to a layer of half a spacing all round.
         skin = sum(self._skin(evidence, fluid, i) for i in range(len(evidence.world.bodies)))
@@ -69,7 +69,7 @@ class CheckFluidMass(Check):
 
 @dataclass
 class CheckPlanFluid(Check):
-    """Each fluid has the plan's density and viscosity, and stands where the plan has its free surface."""
+    """Each fluid has the plan's density, viscosity and velocity, and stands where the plan has its free surface."""
 
     share: float = 0.05  # of the density
     spacings: float = 0.5  # of the level: half of what the particles resolve
@@ -84,7 +84,7 @@ class CheckPlanFluid(Check):
         found: list[Finding] = []
         for item, fluid in known:
             found += [*self._density(fluid, item), *self._viscosity(fluid, item), *self._level(evidence, fluid, item)]
-            found += self._block(fluid, item)
+            found += [*self._block(fluid, item), *self._velocity(fluid, item)]
         return found or ([self.passed("Fluids are of the plan's density, viscosity and level")] if known else [])
 
     def _viscosity(self, fluid: Fluid, item: PlanObject) -> list[Finding]:
@@ -122,6 +122,22 @@ class CheckPlanFluid(Check):
                 f"{listed(item.size)} m at {listed(item.pose.position)} m",
                 off, limit, "m", expected=0.0, prim=fluid.prim, time=0.0,
                 limit_from=f"a particle spacing, or {self.share:.0%} of its longest edge", target=target,
+            )
+        ]  # fmt: skip
+
+    def _velocity(self, fluid: Fluid, item: PlanObject) -> list[Finding]:
+        off, limit = math.dist(fluid.velocity, item.velocity), self.share * math.hypot(*item.velocity)
+        if off <= limit:
+            return []
+        target = RepairTarget(
+            kind="fluid", prim=fluid.prim, parameter="velocity", direction="change", unit="m/s",
+            suggested=math.hypot(*item.velocity), vector=item.velocity,
+        )  # fmt: skip
+        return [
+            self.measured(
+                f"{fluid.prim} starts at {listed(fluid.velocity)} m/s; the plan has {listed(item.velocity)} m/s",
+                off, limit, "m/s", expected=0.0, prim=fluid.prim, time=0.0,
+                limit_from=f"{self.share:.0%} of the plan's speed", target=target,
             )
         ]  # fmt: skip
 
@@ -189,7 +205,7 @@ class CheckHydrostatic(Check):
             return None
         level = evidence.level(fluid)
         height = level.height - level.floor
-        speed = math.sqrt(float(np.mean(np.einsum("tni,tni->tn", track.velocity[frames], track.velocity[frames]))))
+        speed = math.sqrt(float(track.mean(np.einsum("tni,tni->tn", track.velocity, track.velocity))[frames].mean()))
         if height < self.layers * fluid.spacing or speed > self.still * evidence.velocity_scale(height):
             return None
         depth = level.height - np.asarray(track.position[frames, :, 2], dtype=np.float64)

@@ -75,6 +75,8 @@ class CheckFluidHeight(Check):
 
     def _height(self, evidence: Evidence, fluid: Fluid, container: Container, rows: list[int]) -> list[Finding]:
         track = evidence.track(fluid)
+        if track.present is not None:  # what still falls from a tap is not of the pool
+            return []
         late = track.time >= evidence.window_start - 1e-9
         if evidence.outside(fluid)[late].max(initial=0.0) > SPILLED:
             return []

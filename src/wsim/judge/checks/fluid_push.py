@@ -54,7 +54,15 @@ class CheckFluidPush(Check):
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding for each body that a fluid touches."""
         impulse, fluids = fluid_impulse(evidence.recording), evidence.world.fluids
-        if impulse is None or not fluids or not evidence.world.bodies or (method := Method.of(evidence)) is None:
+        # What is in the pipes of taps and drains pushes too, and is not recorded.
+        if (
+            evidence.world.taps
+            or evidence.world.drains
+            or impulse is None
+            or not fluids
+            or not evidence.world.bodies
+            or (method := Method.of(evidence)) is None
+        ):
             return []
         tracks = [evidence.track(fluid) for fluid in fluids]
         time = tracks[0].time

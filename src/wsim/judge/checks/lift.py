@@ -48,6 +48,8 @@ class CheckLift(Check):
         if impulse is None or len(fluids) != 1 or evidence.gravity == 0.0 or not evidence.world.bodies:
             return []
         fluid = fluids[0]
+        if evidence.track(fluid).present is not None:  # the pool's momentum changes by what comes and goes
+            return []
         container, track = evidence.container_of(fluid), evidence.track(fluid)
         frames = np.flatnonzero(np.isin(evidence.time, track.time))
         if container is None or not lone_pool(evidence.world, container, evidence.up) or len(frames) < len(track.time):

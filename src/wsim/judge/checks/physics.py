@@ -61,17 +61,19 @@ class CheckExplosion(Check):
         tops = [float(evidence.ends(i)[1][0]) for i in range(len(world.bodies))]
         up = evidence.up
         tops += [float(np.array(fluid.center) @ up + np.array(fluid.size) @ np.abs(up) / 2) for fluid in world.fluids]
+        tops += [float(np.array(tap.position) @ up) for tap in world.taps]
         lowest = lows(evidence)
         bottoms = [float(evidence.ends(i)[0][0]) for i in range(len(world.bodies))]
         # Nothing to land on, or not for what hangs under it: particles fall for as long as the run lasts.
         if min(lowest, default=math.inf) > min(bottoms, default=math.inf) or not lowest:
-            lowest = [float((evidence.track(fluid).position @ up).min()) for fluid in world.fluids]
+            lowest = [float(np.nanmin(evidence.track(fluid).position @ up)) for fluid in world.fluids]
         lowest += [float(evidence.ends(i)[0].min()) for i in range(len(world.bodies))]
         fall = max(0.0, max(tops, default=0.0) - min(lowest, default=0.0))
         # What spins may hand on the speed of its rim: a joint there, or the ground, makes it another's.
         speeds = [(math.hypot(*body.velocity), math.hypot(*body.angular_velocity)) for body in world.bodies]
         rims = zip(speeds, evidence.motion.radius, strict=True)
-        start = max((float(speed + spin * radius) for (speed, spin), radius in rims), default=0.0)
+        started = [math.hypot(*fluid.velocity) for fluid in world.fluids] + [tap.speed for tap in world.taps]
+        start = max((*started, *(float(speed + spin * radius) for (speed, spin), radius in rims)), default=0.0)
         return math.sqrt(max(start, surface_speed(evidence)) ** 2 + 2 * evidence.gravity * fall)
 
     def _bodies(self, evidence: Evidence, free: float) -> Finding:
@@ -132,7 +134,7 @@ class CheckExplosion(Check):
         track = evidence.track(fluid)
         sound = fluid.speed_of_sound or float(evidence.recording.metadata.get("speed_of_sound") or math.inf)
         limit = min(max(self.fluid_factor * free, squeezed_speed(evidence, fluid, free), self.least), sound)
-        square = np.einsum("tni,tni->tn", track.velocity, track.velocity)
+        square = np.nan_to_num(np.einsum("tni,tni->tn", track.velocity, track.velocity))
         # What is under everything solid has left the world, and falls on and on: that is a leak, and counted as one.
         floor = min(lows(evidence), default=-math.inf) - fluid.spacing
         fastest = np.sqrt(np.where(track.position @ evidence.up < floor, 0.0, square).max(axis=1))
@@ -313,9 +315,8 @@ class CheckDensity(Check):
                 found += self._from_scalars(evidence, fluid)
                 continue
             error = np.abs(track.density / fluid.density - 1.0)
-            rank = min(error.shape[1] - 1, int(0.99 * error.shape[1]))
-            tail = np.partition(error, rank, axis=1)[:, rank]
-            found.append(self._held(fluid, error.mean(axis=1), track.time, self.mean, "mean density error"))
+            tail = track.percentile(error, 0.99)
+            found.append(self._held(fluid, track.mean(error), track.time, self.mean, "mean density error"))
             found.append(self._held(fluid, tail, track.time, self.percentile, "99th percentile of the density error"))
         return found
 
@@ -360,7 +361,7 @@ class CheckWaterLevel(Check):
         """The difference, for each fluid in a container whose surface can be seen."""
         found = []
         for fluid in evidence.world.fluids:
-            if evidence.container_of(fluid) is None:
+            if evidence.container_of(fluid) is None or self._changes(evidence, fluid):
                 continue
             level = evidence.level(fluid)
             if level.seen is None:
@@ -380,11 +381,18 @@ class CheckWaterLevel(Check):
         return found
 
     @staticmethod
+    def _changes(evidence: Evidence, fluid: Fluid) -> bool:
+        """Whether there is more or less of it over the final window: then it has no level."""
+        track = evidence.track(fluid)
+        return bool(np.ptp(track.count[track.time >= evidence.window_start - 1e-9]) if len(track.time) else 0)
+
+    @staticmethod
     def _speed(evidence: Evidence, fluid: Fluid) -> float:
         """The particles' root mean square speed over the final window [m/s]."""
         track = evidence.track(fluid)
-        v = track.velocity[track.time >= evidence.window_start - 1e-9]
-        return math.sqrt(float(np.mean(np.einsum("tni,tni->tn", v, v)))) if v.size else 0.0
+        v = track.mean(np.einsum("tni,tni->tn", track.velocity, track.velocity))
+        late = v[track.time >= evidence.window_start - 1e-9]
+        return math.sqrt(float(late.mean())) if late.size else 0.0
 
     def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget:
         """Particles that stand higher or lower than their volume: finer ones keep the volume better."""

@@ -93,7 +93,8 @@ def _of_particles(evidence: Evidence, n: int) -> tuple[tuple[Floats, Floats], tu
     for k, q, v in zip(frames, track.position, track.velocity, strict=True):
         if k < len(evidence.time):
             weight = mass * q.astype(np.float64) * evidence.motion.gravity
-            found[:, k] = 0.5 * mass * np.sum(v.astype(np.float64) ** 2), -weight.sum(), np.abs(weight).sum()
+            kinetic = 0.5 * mass * np.nansum(v.astype(np.float64) ** 2)
+            found[:, k] = kinetic, -np.nansum(weight), np.nansum(np.abs(weight))
     return (found[0], found[0]), (found[1], found[2])
 
 

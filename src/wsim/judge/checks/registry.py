@@ -24,6 +24,7 @@ from wsim.judge.checks import (
     lift,
     mass,
     motion,
+    openings,
     physics,
     plan,
     plan_closed,
@@ -32,6 +33,7 @@ from wsim.judge.checks import (
     plan_joints,
     plan_land,
     plan_motion,
+    plan_openings,
     plan_vehicles,
     recorded,
     recorded_state,
@@ -52,8 +54,8 @@ RUN = (run,)
 PHYSICS = (
     physics, settled, stated, scheduled, continuity, motion, forces, recorded, recorded_state, recorded_ties, impacts,
     rolling, catches, energy, contact, rest, joint, cord, mass, plan, plan_closed, plan_joints, plan_cords,
-    plan_contacts, plan_motion, plan_vehicles, plan_land,
-    fluid, fluid_books, fluid_push, lift, fluid_height, water, camera,
+    plan_contacts, plan_motion, plan_openings, plan_vehicles, plan_land,
+    fluid, openings, fluid_books, fluid_push, lift, fluid_height, water, camera,
 )  # fmt: skip
 
 

@@ -41,7 +41,10 @@ class CheckFinite(Check):
                 ("particle velocities", track.velocity),
                 ("particle densities", track.density),
             ):
-                bad = ~np.isfinite(array).all(axis=tuple(range(1, array.ndim)))
+                wrong = ~np.isfinite(array)
+                if track.present is not None:
+                    wrong &= track.present.reshape(*track.present.shape, *(1,) * (array.ndim - 2))
+                bad = wrong.any(axis=tuple(range(1, array.ndim)))
                 if bad.any():
                     first = _earlier(first, (float(track.time[np.argmax(bad)]), prim, what))
         if first is not None:
@@ -107,7 +110,7 @@ class CheckComplete(Check):
             )
         for fluid in evidence.world.fluids:
             track = evidence.recording.fluids.get(fluid.prim)
-            if track is None or len(track.time) == 0 or track.position.shape[1] == 0:
+            if track is None or len(track.time) == 0 or not track.count.any():
                 message = f"{fluid.prim}: the recording holds no particles of it"
                 found.append(self.failed(message, prim=fluid.prim))
         return found

@@ -36,7 +36,9 @@ class CheckLeak(Check):
         found = []
         for fluid in evidence.world.fluids:
             track = evidence.track(fluid)
-            lost = np.array([self._through(evidence, fluid, points) for points in track.position])
+            lost = np.array(
+                [self._through(evidence, fluid, points[track.there(k)]) for k, points in enumerate(track.position)]
+            )
             value, at = int(lost.max(initial=0)), int(np.argmax(lost > 0))
             found.append(
                 self.measured(
@@ -73,9 +75,9 @@ class CheckLevelSurface(Check):
         found = []
         for fluid in evidence.world.fluids:
             container = evidence.container_of(fluid)
-            if container is None or not self._alone(evidence, fluid, container):
-                continue
             track = evidence.track(fluid)
+            if container is None or track.present is not None or not self._alone(evidence, fluid, container):
+                continue
             late = track.time >= evidence.window_start
             points = local(container, track.position[late].mean(axis=0).astype(np.float64))
             level = fluid.size[0] * fluid.size[1] * fluid.size[2] / (container.inner_size[0] * container.inner_size[1])

@@ -26,11 +26,15 @@ class Containment:
 
     strayed: Bools  # (T, N): more than `slack` beyond its walls or under its floor; over the open rim is not
     above: Bools  # (T, N): more than `slack` over its rim
-    outside: Floats  # (T,): share that strayed
+    count: Floats  # (T,): particles in the world, 1 at least
 
     @classmethod
-    def of(cls, container: Container, position: NDArray[np.float32], slack: float) -> Containment:
-        """Of particles at positions (T, N, 3), `slack` beside the container's inner faces [m]."""
+    def of(cls, container: Container, position: NDArray[np.float32], slack: float, poured: bool = False) -> Containment:
+        """Of particles at positions (T, N, 3), `slack` beside the container's inner faces [m].
+
+        One that is not in the world has no position: it is NaN, and neither strayed nor above. With `poured` it may
+        come from a tap anywhere over the rim, and has strayed when it is below that.
+        """
         strayed = np.empty(position.shape[:2], dtype=bool)
         above = np.empty_like(strayed)
         half = np.array(container.inner_size) / 2 + slack
@@ -38,11 +42,19 @@ class Containment:
             x, y, z = np.moveaxis(local(container, points), -1, 0)
             strayed[t] = (np.abs(x) > half[0]) | (np.abs(y) > half[1]) | (z < -half[2])
             above[t] = z > half[2]
-        return cls(strayed, above, strayed.mean(axis=1))
+            if poured:
+                strayed[t] &= ~above[t]
+        return cls(strayed, above, np.maximum(np.isfinite(position[..., 0]).sum(axis=1), 1).astype(np.float64))
+
+    @property
+    def outside(self) -> Floats:
+        """Share that strayed, (T,)."""
+        share: Floats = self.strayed.sum(axis=1) / self.count
+        return share
 
     def inside(self) -> Floats:
         """Share that is inside, below the rim, at each frame (T,)."""
-        return 1.0 - (self.strayed | self.above).mean(axis=1)
+        return 1.0 - (self.strayed | self.above).sum(axis=1) / self.count
 
 
 def local(container: Container, points: Floats) -> Floats:

@@ -237,7 +237,8 @@ class Recorded:
         """Which particles a container holds, to a spacing; worked out once. MissingError."""
         key = container.prim, fluid.prim
         if key not in self._containments:
-            self._containments[key] = Containment.of(container, self.track(fluid).position, fluid.spacing)
+            position, poured = self.track(fluid).position, bool(self.world.taps)
+            self._containments[key] = Containment.of(container, position, fluid.spacing, poured)
         return self._containments[key]
 
     def outside(self, fluid: Fluid) -> Floats:

@@ -68,10 +68,10 @@ def _surface(signals: Signals, evidence: Evidence, fluid: Fluid) -> tuple[Array,
     level, container, track = evidence.level(fluid), evidence.container_of(fluid), evidence.track(fluid)
     if container is None:
         raise MissingError(f"{fluid.prim} has no container: it has no level")
-    inside = evidence.containment(container, fluid).inside()
+    inside = evidence.containment(container, fluid).inside() * track.count * fluid.cell
     end = float(inside[track.time >= evidence.window_start - 1e-9].mean())
     area = container.inner_size[0] * container.inner_size[1]
-    missing = (end - inside) * math.prod(fluid.size) / area
+    missing = (end - inside) / area
     return (level.height - missing[latest(track.time, signals.time)])[None], level.floor
 
 
@@ -191,8 +191,8 @@ def _level_in(asked: LevelIn, signals: Signals) -> list[Measure]:
     """By the volume of the particles that are in the vessel, as if they stood level in it."""
     evidence, fluid = signals.fluid(asked.fluid)
     container, track = signals.container(asked.ref), evidence.track(fluid)
-    share = evidence.containment(container, fluid).inside()[latest(track.time, signals.time)]
-    value = share * math.prod(fluid.size) / (container.inner_size[0] * container.inner_size[1])
+    inside = evidence.containment(container, fluid).inside() * track.count * fluid.cell
+    value = inside[latest(track.time, signals.time)] / (container.inner_size[0] * container.inner_size[1])
     tolerance = asked.within or SPACINGS * fluid.spacing
     source = "the objective's" if asked.within else f"{SPACINGS:g} particle spacings: what the particles resolve"
     return [
@@ -208,10 +208,9 @@ def _swirls(asked: SwirlsBetween, signals: Signals) -> list[Measure]:
     """The rate of the rigid turn with the fluid's angular momentum about its middle: L / I, particles being alike."""
     evidence, fluid = signals.fluid(asked.fluid)
     track, k = evidence.track(fluid), "xyz".index(asked.axis)
-    r, v = (np.asarray(each, dtype=np.float64) for each in (track.position, track.velocity))
-    r, v = r - r.mean(axis=1, keepdims=True), v - v.mean(axis=1, keepdims=True)
-    momentum = np.cross(r, v)[..., k].sum(axis=1)
-    inertia = (np.sum(r**2, axis=-1) - r[..., k] ** 2).sum(axis=1)
+    r, v = (each - track.mean(each)[:, None] for each in (track.position, track.velocity))
+    momentum = np.nansum(np.cross(r, v)[..., k], axis=1)
+    inertia = np.nansum(np.sum(r**2, axis=-1) - r[..., k] ** 2, axis=1)
     rate = np.degrees(momentum / np.maximum(inertia, np.finfo(np.float64).tiny))
     value = rate[latest(track.time, signals.time)][None]
     what, scale = f"rate at which it turns about {asked.axis}", max(abs(asked.low), abs(asked.high), 1e-9)

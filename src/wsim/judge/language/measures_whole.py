@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.language.signals import Signals
+    from wsim.scene.world import Fluid
 
     Floats = NDArray[np.float64]
 
@@ -248,13 +249,29 @@ def _momentum(signals: Signals, rows: list[int]) -> tuple[Floats, Floats]:
 def _mass(asked: Conserves, signals: Signals) -> Measure:
     """What of a fluid is no longer where it can be counted: outside of its container, or not finite."""
     evidence, fluid = signals.fluid(asked.objects[0])
-    track, total = evidence.track(fluid), math.prod(fluid.size) * fluid.density
+    track = evidence.track(fluid)
+    if track.present is not None:
+        return _passed_mass(asked, signals, evidence, fluid)
+    total = math.prod(fluid.size) * fluid.density
     finite = np.isfinite(track.position).all(axis=2)
     there = finite.mean(axis=1) if fluid.container is None else 1.0 - evidence.outside(fluid)
     there = np.minimum(there, finite.mean(axis=1))
     value = (np.abs(there - there[0]) * total)[latest(track.time, signals.time)][None]
     source = f"{asked.share:g} of {total:.4g} kg"
     return Measure("change of mass", fluid.prim, value, asked.share * total, "kg", total, source, expected=0.0)
+
+
+def _passed_mass(asked: Conserves, signals: Signals, evidence: Evidence, fluid: Fluid) -> Measure:
+    """Of a fluid that comes from taps and leaves by drains: what came less what went and what is held."""
+    track, scalars = evidence.track(fluid), evidence.recording.scalars
+    held = track.count * fluid.density * fluid.cell
+    at = np.minimum(np.searchsorted(evidence.time, track.time), len(evidence.time) - 1)
+    passed = (scalars["fluid/mass_in"] - scalars["fluid/mass_out"])[at]
+    total = float((held[0] + scalars["fluid/mass_in"][at]).max())
+    value = np.abs(held[0] + passed - held)[latest(track.time, signals.time)][None]
+    source = f"{asked.share:g} of {total:.4g} kg"
+    what = "mass that came, less what went and what is held,"
+    return Measure(what, fluid.prim, value, asked.share * total, "kg", total, source, expected=0.0)
 
 
 # ---- what to change

@@ -122,7 +122,7 @@ def make_extrapolate(sums: PairSums) -> wp.Kernel:
         them with water. Both forms are linear in v_b, so that its mean, weighted with the viscosities, serves both.
 
         `motion` is that of the solid: its own velocity comes in, the mirrored one and the pressure go out; `DRY` where
-        no fluid is near. `facing` gets the way to the fluid.
+        no fluid is near. `facing` gets the way to the fluid, and sum W.
         """
         s = first + wp.tid()
         p = load_record(solid.point, s)
@@ -145,7 +145,7 @@ def make_extrapolate(sums: PairSums) -> wp.Kernel:
             share = artificial / wp.max(artificial + laminar, TINY)
             v = own + share * slip - (1.0 - share) * past
             motion[s] = wp.vec4(v[0], v[1], v[2], pressure)
-            facing[s] = wp.vec4(normal[0], normal[1], normal[2], 0.0)
+            facing[s] = wp.vec4(normal[0], normal[1], normal[2], total[0])
 
     return extrapolate
 

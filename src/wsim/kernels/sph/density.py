@@ -17,6 +17,8 @@ HELD_AT_SURFACE = wp.constant(4.0)
 # Of what is around a particle the share that is filled: at a level surface 0.6, one layer further down 0.9.
 OPEN = wp.constant(0.7)
 CLOSED = wp.constant(0.9)
+# Of what is around a particle in a gap the share of fluid from which on it needs none of what is handed on there.
+ALONE = wp.constant(0.25)
 # One body particle half a smoothing length inside the support, or several further out, and walls give nothing back.
 FADE = wp.constant(4.0)
 
@@ -32,6 +34,13 @@ class Method:
     artificial_viscosity: float  # alpha
     laminar_factor: float  # about 2 (d + 2) in d dimensions
     background_pressure: float  # [Pa]
+    vented: float  # at which pressure leaves what has a void beside it [1/s]; 0: only by its flow
+
+
+@wp.func
+def dimensions(grid: Grid) -> float:
+    """2 in a plane, else 3."""
+    return wp.where(in_plane(grid), 2.0, 3.0)
 
 
 @wp.func
@@ -41,8 +50,7 @@ def _enclosed(grid: Grid, filled: float) -> float:
     -sum V_j (x_i - x_j).grad W, the divergence of the position, is the number of dimensions where the kernel is full
     (Lee et al. 2008).
     """
-    dimensions = wp.where(in_plane(grid), 2.0, 3.0)
-    return wp.clamp((filled / dimensions - OPEN) / (CLOSED - OPEN), 0.0, 1.0)
+    return wp.clamp((filled / dimensions(grid) - OPEN) / (CLOSED - OPEN), 0.0, 1.0)
 
 
 def make_continuity(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
@@ -76,7 +84,12 @@ def make_continuity(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
 
         The second sum is the density diffusion of Fourtakas et al. (2019, Computers & Fluids 190): the hydrostatic
         part rho^H_ij of the difference is left out of Molteni & Colagrossi's (2009) term, so that a tank at rest keeps
-        its pressure. It spans fluid alone, and so neither makes nor destroys volume in sum.
+        its pressure. It spans fluid alone, and so neither makes nor destroys volume in sum, but for single particles in
+        a gap of bodies, which take on the pressure there (`push.make_push`).
+
+        Where drops come from taps and meet again, each has the density of water, and continuity has them press on each
+        other as soon as they are within reach, with voids between them: the heap would stand up to twice as high as its
+        volume. Beside a void is the air, whose pressure is 0; `vented` is the rate at which it gets in.
 
         `full` is how far each is from any void, in original order, for the next step's `boundary.compress`.
         """
@@ -103,6 +116,7 @@ def make_continuity(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
                 at_bodies = of_bodies(grid, fluid, bodies, s, world, method.shape, x, v, m[3], weight)
                 divergence += at_bodies[0]
                 filled += at_bodies[2]
+                smoothing += wp.max(1.0 - total[2] / (ALONE * dimensions(grid)), 0.0) * at_bodies[3]
                 # What walls give back fades as a body comes within reach: see `boundary.compress`.
                 given_back *= wp.max(1.0 - FADE * at_bodies[1], 0.0)
         enclosed = _enclosed(grid, filled)
@@ -111,7 +125,10 @@ def make_continuity(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         c2 = method.speed_of_sound * method.speed_of_sound
         rate = (c2 * rho0 + m[3]) * divergence + 2.0 * method.diffusion * method.h * method.speed_of_sound * smoothing
         least = enclosed * (LOWEST_DENSITY - 1.0) * rho0 * c2 - HELD_AT_SURFACE * wp.length(weight) * method.h
-        pressure[s] = wp.max(m[3] + dt * rate, least)
+        now = wp.max(m[3] + dt * rate, least)
+        if now > 0.0:
+            now *= wp.exp(-dt * method.vented * (1.0 - enclosed))
+        pressure[s] = now
 
     return continuity
 

@@ -25,18 +25,65 @@ def _crossed(half: wp.vec3, before: wp.vec3, now: wp.vec3) -> wp.vec3:
     return normal
 
 
+@wp.struct
+class Faces:
+    """Those of each world, W: `first` of each kind says where each world's begin, (W + 1,)."""
+
+    plane_first: wp.array(dtype=int)
+    plane: wp.array(dtype=wp.vec4)  # outward unit normal n, and n.x on it [m]
+    box_first: wp.array(dtype=int)
+    box: wp.array(dtype=wp.transform)
+    box_half: wp.array(dtype=wp.vec3)  # [m]
+    box_low: wp.array(dtype=wp.vec3)  # corners of what is upright around each [m]
+    box_high: wp.array(dtype=wp.vec3)
+    round_first: wp.array(dtype=int)
+    round: wp.array(dtype=wp.transform)
+    round_size: wp.array(dtype=wp.vec3)  # radius, half the height of the straight part [m]; 1 where the ends are flat
+    mesh_first: wp.array(dtype=int)
+    mesh: wp.array(dtype=wp.uint64)
+    mesh_pose: wp.array(dtype=wp.transform)
+    mesh_low: wp.array(dtype=wp.vec3)
+    mesh_high: wp.array(dtype=wp.vec3)
+    reach: float  # [m]: nothing is deeper in a mesh; it is put back before
+
+
+@wp.func
+def _between(low: wp.vec3, high: wp.vec3, x: wp.vec3) -> bool:
+    return x[0] > low[0] and x[0] < high[0] and x[1] > low[1] and x[1] < high[1] and x[2] > low[2] and x[2] < high[2]
+
+
+@wp.func
+def _out_of_round(size: wp.vec3, x: wp.vec3) -> wp.vec3:
+    """The way out of a sphere, a capsule or a cylinder along z, in its frame; 0 outside."""
+    aside = wp.vec3(x[0], x[1], 0.0)
+    beyond = wp.abs(x[2]) - size[1]
+    if size[2] == 0.0:
+        if beyond > 0.0:
+            aside[2] = wp.sign(x[2]) * beyond
+        return wp.max(size[0] - wp.length(aside), 0.0) * wp.normalize(aside)
+    deep = size[0] - wp.length(aside)
+    if deep <= 0.0 or beyond >= 0.0:
+        return wp.vec3(0.0, 0.0, 0.0)
+    if deep < -beyond:
+        return deep * wp.normalize(aside)
+    return wp.vec3(0.0, 0.0, -wp.sign(x[2]) * beyond)
+
+
+@wp.func
+def _out_of_mesh(mesh: wp.uint64, reach: float, x: wp.vec3) -> wp.vec3:
+    """The way out of a closed mesh, in its frame; 0 outside, and deeper than `reach`."""
+    found = wp.mesh_query_point_sign_winding_number(mesh, x, reach)
+    if not found.result or found.sign > 0.0:
+        return wp.vec3(0.0, 0.0, 0.0)
+    return wp.mesh_eval_position(mesh, found.face, found.u, found.v) - x
+
+
 @wp.kernel(enable_backward=False)
 def keep_out(
     # Data in:
     particle_world: wp.array(dtype=int),
     mass: wp.array(dtype=float),
-    plane_first: wp.array(dtype=int),  # (W + 1,): where each world's planes begin
-    plane: wp.array(dtype=wp.vec4),  # outward unit normal n, and n.x on it [m]
-    box_first: wp.array(dtype=int),  # (W + 1,): where each world's boxes begin
-    box_pose: wp.array(dtype=wp.transform),
-    box_half: wp.array(dtype=wp.vec3),  # [m]
-    box_low: wp.array(dtype=wp.vec3),  # corners of what is upright around each [m]
-    box_high: wp.array(dtype=wp.vec3),
+    faces: Faces,
     dt: float,
     # Data in and out:
     position: wp.array(dtype=wp.vec3),
@@ -45,8 +92,8 @@ def keep_out(
 ):
     """Put fluid that has come through a face in this step back to it, and stop it there: v.n >= 0, as at a wall.
 
-    Particles of walls push with their pressure, and are laid where water is expected and as deep as a kernel reaches:
-    not on ground that water spills on, nor outside of a tank, whose rim is too thin for them to carry a drop.
+    Particles of walls push with their pressure; between them, and past the rim of a tank, which is too thin for them,
+    a drop of its own would slip through.
     """
     i = wp.tid()
     world = particle_world[i]
@@ -54,21 +101,31 @@ def keep_out(
     v = velocity[i]
     before = x - dt * v
     stop = wp.vec3(0.0, 0.0, 0.0)
-    for k in range(box_first[world], box_first[world + 1]):
-        low = box_low[k]
-        high = box_high[k]
-        if x[0] > low[0] and x[0] < high[0] and x[1] > low[1] and x[1] < high[1] and x[2] > low[2] and x[2] < high[2]:
-            into = wp.transform_inverse(box_pose[k])
+    for k in range(faces.box_first[world], faces.box_first[world + 1]):
+        if _between(faces.box_low[k], faces.box_high[k], x):
+            into = wp.transform_inverse(faces.box[k])
             own = wp.transform_point(into, x)
-            half = box_half[k]
+            half = faces.box_half[k]
             if wp.abs(own[0]) < half[0] and wp.abs(own[1]) < half[1] and wp.abs(own[2]) < half[2]:
                 side = _crossed(half, wp.transform_point(into, before), own)
-                n = wp.transform_vector(box_pose[k], side)
+                n = wp.transform_vector(faces.box[k], side)
                 x += (wp.dot(wp.abs(side), half) - wp.dot(side, own)) * n
                 stop -= wp.min(wp.dot(v + stop, n), 0.0) * n
-    for k in range(plane_first[world], plane_first[world + 1]):
-        n = wp.vec3(plane[k][0], plane[k][1], plane[k][2])
-        deep = plane[k][3] - wp.dot(n, x)
+    for k in range(faces.round_first[world], faces.round_first[world + 1]):
+        own = wp.transform_point(wp.transform_inverse(faces.round[k]), x)
+        out = wp.transform_vector(faces.round[k], _out_of_round(faces.round_size[k], own))
+        x += out
+        stop -= wp.min(wp.dot(v + stop, wp.normalize(out)), 0.0) * wp.normalize(out)
+    for k in range(faces.mesh_first[world], faces.mesh_first[world + 1]):
+        if _between(faces.mesh_low[k], faces.mesh_high[k], x):
+            own = wp.transform_point(wp.transform_inverse(faces.mesh_pose[k]), x)
+            out = wp.transform_vector(faces.mesh_pose[k], _out_of_mesh(faces.mesh[k], faces.reach, own))
+            x += out
+            stop -= wp.min(wp.dot(v + stop, wp.normalize(out)), 0.0) * wp.normalize(out)
+    for k in range(faces.plane_first[world], faces.plane_first[world + 1]):
+        plane = faces.plane[k]
+        n = wp.vec3(plane[0], plane[1], plane[2])
+        deep = plane[3] - wp.dot(n, x)
         if deep > 0.0:
             x += deep * n
             stop -= wp.min(wp.dot(v + stop, n), 0.0) * n

@@ -4,6 +4,9 @@ from wsim.kernels.sph.species import BODIES, WALLS
 
 # Of the way across a gap: fluid that lies farther off behind a particle than 30 degrees past the level is not in there.
 BEYOND = 0.5
+# And what lies behind a particle itself is the other side of its body only when it is straight behind: beside an edge
+# whose faces lean inward, as a prism's, fluid stands at 58 degrees over the level.
+BEHIND = 0.9
 
 WAY = (
     """
@@ -35,7 +38,7 @@ GAP = (
             const Record f = WSIM_LOAD(facings, j);
             ACROSS
             const bool another = OF_ANOTHER;
-            const bool between = another & (g.x * e0 + g.y * e1 + g.z * e2 > -BEYOND * length)
+            const bool between = another & (g.x * e0 + g.y * e1 + g.z * e2 > -BEHIND * length)
                 & (f.x * e0 + f.y * e1 + f.z * e2 < BEYOND * length) & (t > 0.0f);
             const float still = mean - w0 * d0 - w1 * d1 - w2 * d2;
             const float if_dry = IF_DRY;

@@ -11,6 +11,8 @@ in a batch, and its sums add up in the same order.
 
 import warp as wp
 
+PARKED = wp.constant(-1)  # stage of a particle that is not in its world (`openings`)
+
 
 @wp.struct
 class Grid:
@@ -84,15 +86,23 @@ def assign_cells(
     order: wp.array(dtype=int),
     position: wp.array(dtype=wp.vec3),
     particle_world: wp.array(dtype=int),
+    stage: wp.array(dtype=int),  # empty where none is ever parked
     # Data out:
     key: wp.array(dtype=int),
     value: wp.array(dtype=int),
     cell_count: wp.array(dtype=int),
 ):
-    """Cell of each particle, in the present order, and how many particles each cell has."""
+    """Cell of each particle, in the present order, and how many particles each cell has.
+
+    What is parked is in the last cell of its world, wherever it is: no other particle comes near that.
+    """
     k = wp.tid()
     i = order[first + k]
-    cell = grid_cell(grid, particle_world[i], position[i])
+    world = particle_world[i]
+    cell = grid_cell(grid, world, position[i])
+    if stage.shape[0] > 0:
+        if stage[i] == PARKED:
+            cell = (world + 1) * grid.count[0] * grid.count[1] * grid.count[2] - 1
     key[k] = cell
     value[k] = i
     wp.atomic_add(cell_count, cell, 1)

@@ -15,7 +15,7 @@ from typing import Any
 
 import warp as wp
 
-from wsim.kernels.sph.gap_sums import ACROSS, BEYOND, GAP, GRADIENT, SEEPING, WAY, between
+from wsim.kernels.sph.gap_sums import ACROSS, BEHIND, BEYOND, GAP, GRADIENT, SEEPING, WAY, between
 from wsim.kernels.sph.grid import Grid
 from wsim.kernels.sph.rows import walk
 from wsim.kernels.sph.species import BODIES, DRY, FLUID, WALLS, Species
@@ -116,16 +116,19 @@ _CONTINUITY_AT_WALLS = (
 
 _CONTINUITY_AT_BODIES = (
     """
-    const float v0 = v[0], v1 = v[1], v2 = v[2];
-    float divergence = 0.0f, presence = 0.0f, filled = 0.0f;
+    const Record* __restrict__ handeds = reinterpret_cast<const Record*>(other.handed.data);
+    const float v0 = v[0], v1 = v[1], v2 = v[2], w0 = common[0], w1 = common[1], w2 = common[2];
+    float divergence = 0.0f, presence = 0.0f, filled = 0.0f, seeping = 0.0f;
     """,
     """
+            const Record h = WSIM_LOAD(handeds, j);
             const float slope = q.w * (t2 * t);
             divergence += slope * ((v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2);
             presence += t;
             filled += slope * r2;
+            seeping -= h.x > 0.5f * DRY_PRESSURE ? slope * (h.x - p + w0 * d0 + w1 * d1 + w2 * d2) : 0.0f;
     """,
-    "return wp::vec_t<3, float>(slope_norm * divergence, presence, -slope_norm * filled);",
+    "return wp::vec_t<4, float>(slope_norm * divergence, presence, -slope_norm * filled, slope_norm * seeping);",
 )
 
 _FLUX = (
@@ -234,7 +237,8 @@ class PairSums:
         continuity: Over fluid: sums of V_j v_ij.grad W, of the density diffusion, and of -V_j x_ij.grad W.
         continuity_at_walls: Over walls: sums of V_j v_ij.grad W, of W times what a wall gives back, and of
             -V_j x_ij.grad W.
-        continuity_at_bodies: Over bodies: sums of V_j v_ij.grad W, of 1 - r / 2h, and of -V_j x_ij.grad W.
+        continuity_at_bodies: Over bodies: sums of V_j v_ij.grad W, of 1 - r / 2h, of -V_j x_ij.grad W, and of the
+            density diffusion over those that hand on a pressure in a gap.
         flux: `Flux`, over fluid around what stands still.
         extrapolation: `Extrapolated`, over fluid.
         force: Force on a particle per volume, over fluid or bodies.
@@ -296,7 +300,7 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool,
         )
         loop = loop.replace("UNROLL", "2" if branch else "1")
         loop = loop.replace("IMAGES", _images(periodic)).replace("TERM", term.replace("DRY_PRESSURE", f"{DRY:e}f"))
-        loop = loop.replace("BEYOND", f"{BEYOND:e}f")
+        loop = loop.replace("BEYOND", f"{BEYOND:e}f").replace("BEHIND", f"{BEHIND:e}f")
         listed = _LISTED.replace("OTHERS", _OTHERS[kind]).replace("KIND", str(kind)).replace("LOOP", loop)
         search = listed if lists else walk(loop, reach, periodic)
         return _SUM.replace("SEARCH", search).replace("BEFORE", before).replace("AFTER", after)
@@ -328,7 +332,7 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool,
     return PairSums(
         continuity=total(_CONTINUITY, wp.vec3),
         continuity_at_walls=total(_CONTINUITY_AT_WALLS, wp.vec3, WALLS),
-        continuity_at_bodies=total(_CONTINUITY_AT_BODIES, wp.vec3, BODIES),
+        continuity_at_bodies=total(_CONTINUITY_AT_BODIES, wp.vec4, BODIES),
         flux=total(_FLUX, Flux),
         extrapolation=total(_EXTRAPOLATION, Extrapolated),
         force={kind: total(_MOMENTUM, wp.vec3, kind) for kind in (FLUID, BODIES)},

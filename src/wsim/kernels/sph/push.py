@@ -119,6 +119,8 @@ def make_push(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         Water gets between faces that touch, farther than the fluid is within reach of: a particle there takes its
         pressure from those of its body that are at the gap, too, as it would from fluid, one step after the other. A
         dry particle of a wall has the pressure of the one that it pushes, but for the height between them.
+        A wet one hands on the mean of its fluid's and theirs: a single particle of fluid that is pressed in between
+        faces has a pressure of its own, which says nothing about the gap.
 
         `handed` is the pressure that it hands on, `DRY` if it has none or is at no gap, over how many others it came,
         and k_b.
@@ -150,12 +152,12 @@ def make_push(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
                 total += wp.vec3(others[0], others[1], others[2])
                 in_gap = wp.vec3(at_walls[0], at_walls[1], at_walls[2])
             if others[3] + at_walls[3] > 0.0:
+                near = seeping(grid, bodies, bodies, s, world, method.shape, x, given, own, weight_of_water)
                 if wet:
-                    to_hand = wp.vec3(pressure, 0.0, 1.0)
-                else:
-                    near = seeping(grid, bodies, bodies, s, world, method.shape, x, given, own, weight_of_water)
-                    if near[0] > 0.0 and near[2] < MOST_HOPS:
-                        to_hand = wp.vec3(wp.max(near[1] / near[0], least), near[2] + 1.0, 1.0)
+                    of_water = load_record(bodies.facing, s)[3]
+                    to_hand = wp.vec3((of_water * m[3] + near[1]) / (of_water + near[0]), 0.0, 1.0)
+                elif near[0] > 0.0 and near[2] < MOST_HOPS:
+                    to_hand = wp.vec3(wp.max(near[1] / near[0], least), near[2] + 1.0, 1.0)
                 around = gradient(grid, bodies, fluid, s, world, method.shape, x, given, own, weight_of_water)
                 to_hand[2] = _widening(others + at_walls, around)
         handed[i] = to_hand

@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from wsim.kernels.sph.grid import Grid
+from wsim.kernels.sph.grid import PARKED, Grid
 
 
 @wp.kernel(enable_backward=False)
@@ -13,6 +13,7 @@ def inspect(
     position: wp.array(dtype=wp.vec3),
     velocity: wp.array(dtype=wp.vec3),
     pressure: wp.array(dtype=float),
+    stage: wp.array(dtype=int),  # empty where none is ever parked
     # Data out:
     first_not_finite: wp.array(dtype=int),
     fastest2: wp.array(dtype=float),
@@ -30,6 +31,9 @@ def inspect(
     if not wp.isfinite(wp.dot(x, x) + speed2 + pressure[i]):
         wp.atomic_min(first_not_finite, world, i)
         return
+    if stage.shape[0] > 0:
+        if stage[i] == PARKED:
+            return
     for axis in range(3):
         k = wp.floor((x[axis] - grid.offset[axis]) * grid.inv_cell[axis]) - float(grid.first[axis])
         if grid.reach[axis] > 0 and (k < 0.0 or k >= float(grid.count[axis])):

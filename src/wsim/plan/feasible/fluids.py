@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from wsim.plan.feasible.asked import Said, said
+from wsim.plan.templates import expand_row, is_block
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan, PlanObject
@@ -37,18 +38,20 @@ def _itself(plan: Plan, number: int, item: PlanObject) -> Iterator[str]:
             f"objects.{number}: {item.name} is in no tank, and has no place beside objects that have positions; give "
             'it a "position" too'
         )
-    held, level = item.relation("PLACE-IN"), item.relation("FREE-SURFACE-AT")
-    if held is None or level is None or level.value is None or not item.size:
+    items = {each.name: each for each in plan.objects}
+    if is_block(item, items):
         return
-    tank = next((each for each in plan.objects if each.name == held.ref), None)
-    if tank is None or not tank.size:
+    rows = {row.predicate: row for relation in item.relations for row in expand_row(item, relation, items)}
+    held, level = rows.get("PLACE-IN"), rows.get("FREE-SURFACE-AT")
+    tank = items.get(held.ref or "") if held is not None else None
+    if tank is None or not tank.size or level is None or level.value is None or not item.size:
         return
     given = (*tank.size[:2], level.value)
     if any(abs(a - b) > OVERRIDDEN for a, b in zip(item.size, given, strict=False)):
         own, made = (" x ".join(f"{edge:g}" for edge in edges) for edges in (item.size, given))
         yield (
-            f"objects.{number}.construction.size: {own} m of {item.name}, which FREE-SURFACE-AT and {tank.name} make "
-            f"{made} m; leave the size out, or FREE-SURFACE-AT, so that a block of it starts in the tank"
+            f"objects.{number}.construction.size: {own} m of {item.name}, which its level and {tank.name} make {made} "
+            "m; leave the size out, or keep PLACE-IN alone, so that a block of it starts in the tank"
         )
 
 

@@ -21,6 +21,7 @@ def layout(plan: Plan) -> Plan:
         LayoutError: rows contradict each other, something does not fit where its rows want it, or objects
             interpenetrate; one line that names the rows, the values and the way out.
     """
+    plan = templates.write_out_blocks(plan)
     world = World(plan, templates.expand(plan))
     sizes.give_heights(world)
     _settle(world)

@@ -42,6 +42,7 @@ from wsim.plan.schema.objects import (
     Pose,
     Registration,
 )
+from wsim.plan.schema.openings import OpeningPlan
 from wsim.plan.schema.plan import PLAN_VERSION, Plan
 from wsim.plan.schema.predicates import PREDICATES, TEMPLATES, Predicate
 from wsim.plan.schema.relations import Region, Relation
@@ -79,6 +80,7 @@ __all__ = [
     "Name",
     "NoiseLayer",
     "Objective",
+    "OpeningPlan",
     "Outputs",
     "Plan",
     "PlanObject",

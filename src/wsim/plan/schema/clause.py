@@ -16,6 +16,7 @@ OF_OBJECTS = (
 OF_JOINTS = ("axis", "anchor", "limits", "drive")
 OF_CORDS = ("length", "stiffness", "damping", "rest_length")
 OF_SCHEDULES = ("values", "times")
+OF_OPENINGS = ("rate", "radius", "size", "start", "stop", "drop_speed", "offset")
 WHOLE = "simulation"  # the run itself: its duration
 Index = Annotated[int, Field(ge=0)]
 Thing = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*(\.[a-z_]+)?$", max_length=120)]
@@ -26,8 +27,8 @@ class Clause(Sparse):
 
     Attributes:
         words: As they stand in the prompt, one after another.
-        by: Numbers of objectives, counted from 0; names of objects, joints, cords, schedules, cameras, a property with
-            a dot: "puck.mass".
+        by: Numbers of objectives, counted from 0; names of objects, joints, cords, schedules, openings, cameras, a
+            property with a dot: "puck.mass".
         unchecked: Why nothing shows that they came true; given in place of `by`.
     """
 

@@ -13,6 +13,7 @@ from wsim.plan.schema.clause import Clause
 from wsim.plan.schema.cords import Cord
 from wsim.plan.schema.formula import Formula
 from wsim.plan.schema.objects import PlanObject
+from wsim.plan.schema.openings import OpeningPlan
 from wsim.plan.schema.schedules import SchedulePlan
 
 VIEWS = ("side_minus_x", "side_plus_x", "side_minus_y", "side_plus_y", "top_down")
@@ -231,7 +232,7 @@ class Assumption(Sparse):
         return self
 
 
-_UNWRITTEN = ("contacts", "cords", "schedules", "clauses", "stands_in_for")  # where they are empty
+_UNWRITTEN = ("contacts", "cords", "schedules", "openings", "clauses", "stands_in_for")  # where they are empty
 
 
 class Draft(Strict):
@@ -246,6 +247,7 @@ class Draft(Strict):
     cords: list[Cord] = Field(default_factory=list, max_length=1000)
     contacts: list[Contact] = Field(default_factory=list, max_length=10_000)
     schedules: list[SchedulePlan] = Field(default_factory=list, max_length=1000)
+    openings: list[OpeningPlan] = Field(default_factory=list, max_length=100)
     cameras: list[CameraPlan] = Field(default_factory=list, max_length=100)
     sensors: list[SensorPlan] = Field(default_factory=list, max_length=1000)
     steps: list[Step] = Field(default_factory=list, max_length=1000)

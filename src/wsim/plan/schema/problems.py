@@ -10,6 +10,7 @@ from wsim.plan.schema.clauses import clause_problems
 from wsim.plan.schema.cord_problems import cord_problems
 from wsim.plan.schema.draft import KindOfTwo
 from wsim.plan.schema.land import land_problems
+from wsim.plan.schema.opening_problems import opening_problems
 from wsim.plan.schema.schedule_problems import schedule_problems
 from wsim.plan.schema.supports import support_problems
 
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 
 SHOWN = 12  # names in a message
 _UNITS = {"hinge": "deg", "slider": "m"}
-_STATES = {"static": "static and never moves", "fluid": "a fluid, which starts at rest"}
 
 
 def problems(plan: Draft) -> list[str]:
@@ -37,6 +37,7 @@ def problems(plan: Draft) -> list[str]:
         *_actuation(plan),
         *_by_time(plan),
         *schedule_problems(plan),
+        *opening_problems(plan),
         *land_problems(plan),
         *_others(plan),
         *clause_problems(plan),
@@ -57,8 +58,15 @@ def _numbers(plan: Draft) -> Iterator[str]:
             yield f"objects.{i}.material.friction: {item.material.friction:g} must be <= {MAX_FRICTION:g}"
         for field in ("velocity", "angular_velocity_deg"):
             value = getattr(item, field)
-            if item.state in ("static", "fluid") and value is not None and any(value):
-                yield f"objects.{i}.{field}: {list(value)} of {item.name}, which is {_STATES[item.state]}; remove it"
+            if why := _ill_moved(item, field) if value is not None and any(value) else "":
+                yield f"objects.{i}.{field}: {list(value)} of {item.name}, which {why}; remove it"
+
+
+def _ill_moved(item: PlanObject, field: str) -> str:
+    """Why an object cannot start with a velocity, or a spin."""
+    if item.state == "static":
+        return "is static and never moves"
+    return "is a fluid, and starts without a spin" if item.state == "fluid" and field != "velocity" else ""
 
 
 def _names(plan: Draft) -> Iterator[str]:
@@ -69,6 +77,7 @@ def _names(plan: Draft) -> Iterator[str]:
         "joints": [joint.name for joint in plan.joints],
         "cords": [cord.name for cord in plan.cords],
         "schedules": [schedule.name for schedule in plan.schedules],
+        "openings": [opening.name for opening in plan.openings],
     }
     taken: dict[str, str] = {}
     for kind, names in named.items():

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from wsim.defaults import GRAVITY
-from wsim.plan.schema import PlanObject
-from wsim.plan.spacing import spacing_of
+from wsim.plan.schema import Plan, PlanObject
+from wsim.plan.spacing import ACROSS, spacing_of
 from wsim.program.compose.draft import Draft
 from wsim.program.compose.poses import position
 from wsim.program.source import number, tuple_of
@@ -26,12 +27,14 @@ def arguments(draft: Draft, item: PlanObject) -> list[str]:
     held = container(item)
     level = item.relation("FREE-SURFACE-AT")
     if held is not None and level is not None and level.value is not None:
-        volume = (*plan.object(held).size[:2], level.value)
+        volume: Sequence[float] = _in_the_end(plan, item, plan.object(held).size, level.value)
         found = [f"fills={draft.handles[held]}", f"level={number(level.value)}"]
     else:
         volume = item.size
         found = [f"size={tuple_of(item.size)}", f"position={tuple_of(position(item))}"]
-    found.append(f"spacing={number(spacing_of(plan, item, volume))}")
+    found.append(f"spacing={number(_spacing(plan, item, volume))}")
+    if any(item.velocity):
+        found.append(f"velocity={tuple_of(item.velocity)}")
     if item.registration.viscosity is not None:
         found.append(f"viscosity={number(item.registration.viscosity)}")
     if any(objective.kind == "fills" and objective.object == item.name for objective in plan.objectives):
@@ -43,6 +46,22 @@ def arguments(draft: Draft, item: PlanObject) -> list[str]:
         if item.material.attenuation_length is not None:
             found.append(f"attenuation_length={number(item.material.attenuation_length)}")
     return found
+
+
+def _in_the_end(plan: Plan, item: PlanObject, hollow: Sequence[float], level: float) -> tuple[float, float, float]:
+    """The box that a fluid fills when taps have poured, at most all of its container [m]."""
+    x, y, z = hollow
+    poured = sum(each.poured(plan.simulation.duration) for each in plan.openings if each.fluid == item.name)
+    return x, y, min(level + poured / (x * y), z)
+
+
+def _spacing(plan: Plan, item: PlanObject, volume: Sequence[float]) -> float:
+    """As `spacing_of`, but where it is left open no wider than a quarter of the narrowest mouth [m]."""
+    found = spacing_of(plan, item, volume)
+    mouths = [each.narrowest / ACROSS for each in plan.openings if each.fluid == item.name and not each.drop_speed]
+    if item.registration.spacing or plan.simulation.spacing or not mouths:
+        return found
+    return float(f"{min(found, *mouths):.2g}")
 
 
 def _sound(poured: PlanObject) -> float:

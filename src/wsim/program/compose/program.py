@@ -11,6 +11,7 @@ from wsim.program.compose import (
     joints,
     materials,
     objects,
+    openings,
     robots,
     schedules,
     vehicles,
@@ -46,6 +47,7 @@ def compose(plan: Plan) -> str:
         *vehicles.set_off(draft),
         *contacts.statements(plan),
         *schedules.statements(draft),
+        *openings.statements(plan),
         *cameras.statements(plan),
         *_simulation(plan.simulation),
     ]

@@ -12,6 +12,7 @@ from pathlib import PurePath
 from typing import Any
 
 from wsim.assets import AssetError, get
+from wsim.limits import MIN_SIZE
 from wsim.program.validator.values import Const, Instance, Items, NotKnownError, Unknown, Value, plain
 from wsim.scene import Part, Scene, SceneError
 from wsim.scene.mesh_file import APPROXIMATIONS, FORMATS
@@ -34,6 +35,7 @@ _NEEDS: dict[str, dict[str, Any]] = {
     "tank": {"inner_size": (1.0, 1.0, 1.0)}, "material": {}, "param": {"default": 1.0}, "simulation": {}, "light": {},
     "contact": {"friction": 0.5, "restitution": 0.5},
     "camera": {"eye": (0.0, -3.0, 1.0), "target": (0.0, 0.0, 0.0)}, "fluid": {}, "asset": {},
+    "tap": {"rate": 1.0, "position": (0.0, 0.0, 1.0)}, "drain": {"position": (0.0, 0.0, 0.0)},
     "surface_velocity": {"velocity": (1.0, 0.0, 0.0)},
     "path": {"times": (0.0, 1.0), "positions": ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0))},
     "track": {"pieces": [("line", 1.0)]}, "compound": {"parts": [Part("sphere", radius=0.1)]},
@@ -52,13 +54,14 @@ JOINTS = ("joint_fixed", "joint_revolute", "joint_prismatic", "joint_spherical")
 SENSORS = ("sensor_imu", "sensor_joints", "sensor_range", "sensor_contact", "sensor_camera")
 ABOUT = ("surface_velocity", "path")  # what says more of a body that is there
 CORDS = ("spring", "rope", "cable")
+OPENINGS = ("tap", "drain")
 OBJECTS = (*BODIES, "robot", "vehicle", "ground", "track", "height_field", "terrain", "scatter", "tank", "fluid")
 # Arguments whose rightness hangs on what else is in the scene.
 _TIED = ("name", "parent", "child", "fills", "container", "material", "level", "spacing", "file", "low", "high",
          "a", "b", "anchor_a", "anchor_b", "rest_length", "length", "around", "through", "loose", "links",
          "body", "joints", "times", "positions", "rotations_deg", "joint_a", "joint_b", "points",
          "layers", "areas", "on", "count", "clear", "follows", "turns",
-         "what", "quantity", "values", "linear", "point", "after")  # fmt: skip
+         "what", "quantity", "values", "linear", "point", "after", "start", "stop")  # fmt: skip
 # Arguments that say nothing when they are tried alone, and are kept as they are when all are tried together.
 _TOGETHER = ("mass", "density", "static", "kinematic", "velocity", "angular_velocity_deg", "low", "high", "default",
              "eye", "target")  # fmt: skip
@@ -129,6 +132,7 @@ class World:
             *JOINTS,
             *CORDS,
             *SENSORS,
+            *OPENINGS,
             "gear",
             "policy",
             "schedule",
@@ -245,8 +249,10 @@ class World:
         if method == "camera" and ("eye" in given) != ("target" in given):
             other = "target" if "eye" in given else "eye"
             needs[other] = (-123.4, 56.7, 8.9)
-        scene = Scene() if alone or method == "fluid" else self._probe
+        scene = Scene() if alone or method in ("fluid", *OPENINGS) else self._probe
         needs |= _tied(scene, method, number)
+        if method in OPENINGS and not given.keys() & {"radius", "size"}:
+            needs["radius"] = 1.0
         try:
             getattr(scene, method)(**(needs | given))
         except Exception as error:  # noqa: BLE001 - what it cannot take at all is told by its type
@@ -268,6 +274,9 @@ def _tied(scene: Scene, method: str, number: int) -> dict[str, Any]:
         return {"on": scene.terrain(f"probe_land_{number}", size=(100.0, 100.0), cell=100.0, layers=[_level])}
     if method in CORDS:
         return {"a": body("a")}
+    if method in OPENINGS:  # particles so small that they go through any mouth that there may be
+        size, place = (0.01, 0.01, 0.01), (0.0, 0.0, 0.0)
+        return {"fluid": scene.fluid(f"probe_fluid_{number}", size=size, position=place, spacing=MIN_SIZE)}
     if method.startswith("joint_"):
         return {"child": body("a")}
     if method in ("sensor_imu", "sensor_contact"):

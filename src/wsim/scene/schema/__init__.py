@@ -12,6 +12,8 @@ from wsim.scene import specs
 SCENE = "WsimSceneAPI"
 FLUID = "WsimFluidAPI"
 CONTAINER = "WsimContainerAPI"
+TAP = "WsimTapAPI"
+DRAIN = "WsimDrainAPI"
 CAMERA = "WsimCameraAPI"
 PARAMETER = "WsimParameterAPI"
 HEIGHT_FIELD = "WsimHeightFieldAPI"

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.recording.recording import with_company
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
@@ -45,7 +47,9 @@ class Motion:
         for prim, track in recording.fluids.items():
             if len(track.time):
                 at = np.abs(track.time[None] - time[:, None]).argmin(axis=1)
-                fluids[prim] = np.asarray(track.position[:, _some(track.position.shape[1])])[at]
+                some = _some(track.position.shape[1])
+                there = None if track.present is None else track.present[at, some]
+                fluids[prim] = with_company(np.asarray(track.position[:, some])[at], there)
         return _finite(
             time, recording.body_q, recording.body_qd, recording.contact_force, fluids, recording.control_impulse
         )
@@ -58,6 +62,7 @@ class MotionLog:
         self._times: list[float] = []
         self._frames: list[tuple[Array, Array, Array]] = []
         self._fluids: dict[str, list[Array]] = {}
+        self._present: dict[str, list[Array]] = {}
         self._pushes: list[Array] = []
 
     def add(self, time: float, frame: Frame) -> None:
@@ -69,12 +74,16 @@ class MotionLog:
         for prim, fluid in frame.fluids.items():
             some = fluid.position[_some(len(fluid.position))]
             self._fluids.setdefault(prim, []).append(np.array(some, dtype=np.float32))
+            if fluid.present is not None:
+                self._present.setdefault(prim, []).append(fluid.present[_some(len(fluid.position))])
 
     def motion(self) -> Motion:
         """All that was added."""
         q, qd, force = (np.array(each) for each in zip(*self._frames, strict=True)) if self._frames else _nothing()
         push = np.array(self._pushes) if self._pushes else None
-        return _finite(np.array(self._times), q, qd, force, {p: np.array(x) for p, x in self._fluids.items()}, push)
+        there = {prim: np.array(rows) for prim, rows in self._present.items()}
+        fluids = {prim: with_company(np.array(x), there.get(prim)) for prim, x in self._fluids.items()}
+        return _finite(np.array(self._times), q, qd, force, fluids, push)
 
 
 def _some(count: int) -> slice:
