@@ -118,6 +118,24 @@ def test_an_opaque_liquid_is_lit_as_a_solid_of_its_colour(look: dict) -> None:
     assert wet == pytest.approx(dry, rel=0.06, abs=0.01)
 
 
+def test_a_glass_tank_alone_is_drawn_as_beside_a_solid() -> None:
+    """Where nothing is opaque the shapes' poses are not Newton's to set: those of the memory were drawn."""
+    container, milk = stages.water_in_tank((0.3, 0.2, 0.3), 0.2, 0.02)
+    milk = milk.model_copy(update=MILK)
+    camera = above(64, 30.0).model_copy(update={"eye": (0.3, -0.9, 0.5), "target": (0.0, 0.0, 0.15)})
+    alone = World(statics=[stages.tank((0.3, 0.2, 0.3))], containers=[container], fluids=[milk], cameras=[camera])
+    far = stages.body("far", Shape(prim="", kind="sphere", size=(0.01,)), (0.0, -50.0, 0.0))  # behind the camera
+    pictures = []
+    for world in (alone, alone.model_copy(update={"bodies": [far]})):
+        model = stages.model_of(world)
+        renderer = CameraRenderer(model, world, style=MATT)
+        if not world.bodies:
+            model.bvh_shape_world_transforms.fill_(float("nan"))
+        pictures.append(renderer.render(model.state(), {milk.prim: stages.particles(milk)})["/World/c"].rgb)
+    assert np.ptp(pictures[0].astype(int)) > 50
+    assert np.abs(pictures[0].astype(int) - pictures[1].astype(int)).max() <= 2
+
+
 def test_an_opaque_liquid_turned_from_the_sun_is_darker_and_a_clear_one_is_filled_with_light() -> None:
     sides = {}
     for name, look in (("milk", MILK), ("water", {})):

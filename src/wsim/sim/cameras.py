@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import warp as wp
+from newton._src.geometry.bvh import compute_shape_world_transforms_launch
 from newton.sensors import SensorCamera
 
 from wsim.kernels.render import composite, display, faces, sky
@@ -161,6 +162,9 @@ class CameraRenderer:
         """Bring the shapes to where a state has their bodies."""
         self._cords.update(state)
         self.model.bvh_refit_shapes(state)
+        if self.model.shape_count > 0 and self.model.bvh_shape_count_enabled == 0:
+            # Where all is glass Newton's camera has nothing to meet, and leaves the poses as they are: not set.
+            compute_shape_world_transforms_launch(self.model, state)
 
     def _follow(self, views: Sequence[_View], state: Any) -> None:
         """Bring the cameras that follow bodies to where those are."""
