@@ -222,6 +222,7 @@ def _fluid(prim: Usd.Prim) -> Fluid:
         center=to_vec3(rigid_frame(prim).ExtractTranslation()),
         speed_of_sound=value_of(prim, "speedOfSound", 0.0),
         container=str(targets[0]) if targets else None,
+        volume=value_of(prim, "volume", 0.0) or None,
         line=line_of(prim),
     )
     return fluid.model_copy(update={"color": looks[0].color}) if looks else fluid

@@ -5,6 +5,7 @@ SI units, Z up, quaternions xyzw. Nothing here imports pxr, so a recording can b
 
 from __future__ import annotations
 
+import math
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -115,7 +116,7 @@ class Container(_Model):
 
 
 class Fluid(_Model):
-    """A box of fluid as it stands at t = 0."""
+    """A box of fluid as it stands at t = 0, or what is in that box of a vessel's hollow."""
 
     prim: str
     density: float  # [kg/m^3]
@@ -124,9 +125,22 @@ class Fluid(_Model):
     size: Vec3  # [m]
     center: Vec3  # [m], world
     speed_of_sound: float = 0.0  # [m/s]; 0 lets the solver choose
-    container: str | None = None  # prim of the container it fills
+    container: str | None = None  # prim of the container it fills, or of the vessel
+    volume: float | None = None  # [m^3], of what fills the hollow of a vessel up to the top of its box; else the box's
     color: Vec3 = (0.15, 0.4, 0.6)
     line: str | None = None
+
+    @property
+    def amount(self) -> float:
+        """Its volume [m^3]."""
+        return math.prod(self.size) if self.volume is None else self.volume
+
+    @property
+    def particles(self) -> int:
+        """How many particles stand for it, where no body is in it."""
+        if self.volume is None:
+            return math.prod(max(1, round(length / self.spacing)) for length in self.size)
+        return max(1, round(self.volume / self.spacing**3))
 
 
 class Motor(_Model):

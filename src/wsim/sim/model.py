@@ -24,7 +24,17 @@ from wsim.sim.contacts import harden_contacts, let_roll, rows_of_rolling, spare_
 from wsim.sim.cord_shapes import add_cord_shapes
 from wsim.sim.cords import add_cords
 from wsim.sim.drives import add_drives
-from wsim.sim.fluids import Seeded, add_seeded, containers_of, largest_step, mesh_depths, of_worlds, seed, sph_config
+from wsim.sim.fluids import (
+    Seeded,
+    add_seeded,
+    containers_of,
+    largest_step,
+    mesh_depths,
+    of_worlds,
+    seed,
+    sph_config,
+    vessels_of,
+)
 from wsim.sim.forward import forward_only
 from wsim.sim.numbers import add_worlds, differences, texts
 from wsim.sim.pieces import with_pieces
@@ -37,6 +47,7 @@ from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
 from wsim.solvers.surface_contacts import SurfaceParts
+from wsim.solvers.vessels import Vessel
 
 forward_only()
 
@@ -59,6 +70,7 @@ class Built:
     fluids: tuple[dict[str, slice], ...]
     sph: Any  # SolverSPH.Config, or None without a fluid
     containers: tuple[OpenBox, ...]
+    vessels: tuple[Vessel, ...]
     time_step: TimeStep
     breakable: list[list[Breakable]]
     surfaces: SurfaceParts | None = None  # what collides by its triangles
@@ -283,6 +295,7 @@ def _finalized(builder: Any, ones: Sequence[_One], config: Any | None, step: Tim
         fluids=_ranges(ones, max(1, model.world_count)),
         sph=config,
         containers=_containers(ones),
+        vessels=_vessels(ones),
         time_step=step,
         breakable=[one.breakable for one in ones],
         surfaces=first.surfaces,
@@ -328,6 +341,13 @@ def _containers(ones: Sequence[_One]) -> tuple[OpenBox, ...]:
     if len(ones) == 1:
         return containers_of(ones[0].world)
     return tuple(replace(box, world=k) for k, one in enumerate(ones) for box in containers_of(one.world))
+
+
+def _vessels(ones: Sequence[_One]) -> tuple[Vessel, ...]:
+    """What else holds fluid, of all worlds alike, or of each."""
+    if len(ones) == 1:
+        return vessels_of(ones[0].world)
+    return tuple(replace(vessel, world=k) for k, one in enumerate(ones) for vessel in vessels_of(one.world))
 
 
 def _add_fluids(builder: Any, world: World, config: Any) -> dict[str, slice]:

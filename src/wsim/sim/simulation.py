@@ -199,7 +199,8 @@ class Simulation:
         return needed
 
     def _make_fluid(self) -> SolverSPH | None:
-        return SolverSPH(self.model, self.built.sph, self.built.containers) if self.built.sph else None
+        built = self.built
+        return SolverSPH(self.model, built.sph, built.containers, built.vessels) if built.sph else None
 
     def step(self) -> None:
         """Advance by one time step: the fluid pushes the bodies, then the bodies move."""

@@ -40,7 +40,7 @@ def mesh_layers(vertices: Array, triangles: Array, spacing: float, convex: bool)
     depth = depth_of(cells)
     deep = depth >= RELAXED * spacing
     near = ~deep & (depth > -float(np.linalg.norm(edge)))
-    outer = _spread(cells[near], depth[near], edge, spacing, depth_of)
+    outer = spread_layers(cells[near], depth[near], edge, spacing, depth_of)
     position = np.concatenate([outer.position, cells[deep]])
     volume = np.concatenate([outer.volume, np.full(int(deep.sum()), np.prod(edge))])
     if len(position) == 0:
@@ -48,7 +48,9 @@ def mesh_layers(vertices: Array, triangles: Array, spacing: float, convex: bool)
     return Samples(position, volume * (abs(float(solid.volume)) / volume.sum()))
 
 
-def _spread(cells: Array, depth: Array, edge: Array, spacing: float, depth_of: Callable[[Array], Array]) -> Samples:
+def spread_layers(
+    cells: Array, depth: Array, edge: Array, spacing: float, depth_of: Callable[[Array], Array]
+) -> Samples:
     """Particles of the layers at a surface, spread along it.
 
     Args:

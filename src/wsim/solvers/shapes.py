@@ -16,8 +16,12 @@ from wsim.geometry.rotations import rotate
 from wsim.solvers.layers import mesh_layers
 from wsim.solvers.sampling import container_walls, plane_patch
 from wsim.solvers.sph_config import ConfigSPH
+from wsim.solvers.vessels import Vessel
 
 Array = np.ndarray
+Piece = tuple[Array, Array]  # positions (n, 3) [m] and volumes (n,) [m^3]
+Pieces = dict[int, list[Piece]]
+CLEAR = 0.9  # spacings between what is a vessel's wall and what is not
 
 
 @dataclass(frozen=True)
@@ -110,7 +114,12 @@ def near_fluid(position: Array, fluid: Array, support: float) -> Array:
 
 
 def sample_boundary(
-    model: Any, config: ConfigSPH, containers: tuple[OpenBox, ...], fluid: Array, fluid_world: Array
+    model: Any,
+    config: ConfigSPH,
+    containers: tuple[OpenBox, ...],
+    fluid: Array,
+    fluid_world: Array,
+    vessels: tuple[Vessel, ...] = (),
 ) -> Boundary:
     """Sample every colliding shape of a model.
 
@@ -122,22 +131,24 @@ def sample_boundary(
         containers: Tanks.
         fluid: Fluid positions [m], shape (n, 3).
         fluid_world: World of each fluid particle, shape (n,).
+        vessels: What else holds fluid.
 
     Raises:
         ValueError: If a container is too narrow for the spacing.
     """
-    walls = frozenset().union(*(c.shapes for c in containers)) if containers else frozenset()
+    walls = frozenset().union(*(box.shapes for box in containers), *(vessel.shapes for vessel in vessels))
     bodies, poses, kinds = model.shape_body.numpy(), model.shape_transform.numpy(), model.shape_type.numpy()
     scales, flags, worlds = model.shape_scale.numpy(), model.shape_flags.numpy(), model.shape_world.numpy()
     world_count = max(1, model.world_count)
-    fixed: list[list[tuple[Array, Array]]] = [[] for _ in range(world_count)]
-    moving: list[list[tuple[Array, Array]]] = [[] for _ in range(model.body_count)]
+    fixed: list[list[Piece]] = [[] for _ in range(world_count)]
+    moving: list[list[Piece]] = [[] for _ in range(model.body_count)]
     plane = config.dimensions == 2
 
     for box in containers:
         piece = _sample_container(box, config)
         for world in range(world_count) if box.world < 0 else (box.world,):
             fixed[world].append(piece)
+    behind = _add_vessels(model, config.spacing, vessels, moving)
 
     for shape in range(model.shape_count):
         if not flags[shape] & ShapeFlags.COLLIDE_SHAPES or model.shape_label[shape] in walls:
@@ -170,7 +181,31 @@ def sample_boundary(
             if len(here):
                 keep = near_fluid(position, here, config.support) & _in_period(position, config)
                 fixed[world].append((position[keep], found.volume[keep]))
+    for world, pieces in behind.items():
+        fixed[world] = [*_without(fixed[world], pieces, config.spacing), *pieces]
     return _join(fixed, moving, model.body_world.numpy() if model.body_count else np.zeros(0, int))
+
+
+def _add_vessels(model: Any, spacing: float, vessels: tuple[Vessel, ...], moving: list[list[Piece]]) -> Pieces:
+    """Walls of those that stand still, of each world; those of bodies are added to theirs."""
+    behind: Pieces = {}
+    labels, worlds = [str(label) for label in model.body_label], model.body_world.numpy()
+    for vessel in vessels:
+        found = vessel.walls(spacing)
+        for world in range(max(1, model.world_count)) if vessel.world < 0 else (vessel.world,):
+            if vessel.body is None:
+                behind.setdefault(world, []).append((found.position, found.volume))
+        for body, label in enumerate(labels):
+            if label == vessel.body and vessel.world in (-1, int(worlds[body])):
+                moving[body].append((found.position, found.volume))
+    return behind
+
+
+def _without(fixed: list[Piece], behind: list[Piece], spacing: float) -> list[Piece]:
+    """Samples without those where a vessel's walls are: what it stands on would count twice through a thin floor."""
+    tree = cKDTree(np.concatenate([position for position, _ in behind]))
+    away = [tree.query(position)[0] > CLEAR * spacing for position, _ in fixed]
+    return [(position[keep], volume[keep]) for (position, volume), keep in zip(fixed, away, strict=True)]
 
 
 def _in_period(position: Array, config: ConfigSPH) -> Array:

@@ -23,6 +23,8 @@ from wsim.solvers.sph_faults import in_words
 from wsim.solvers.sph_particles import SortedParticles
 from wsim.solvers.sph_push import BodyPush
 from wsim.solvers.sph_search import ParticleSearch
+from wsim.solvers.sph_skins import Skins
+from wsim.solvers.vessels import Vessel
 
 LEAST_LANES = 32
 
@@ -45,6 +47,7 @@ class SolverSPH(SolverBase):
         model: The model to simulate; its particles are the fluid of every world.
         config: Settings of the method.
         containers: Tanks that hold the fluid.
+        vessels: What else holds it.
 
     Raises:
         ValueError: If the model has no particles, the settings are out of range, or a container is too narrow.
@@ -71,7 +74,13 @@ class SolverSPH(SolverBase):
                 )
             )
 
-    def __init__(self, model: newton.Model, config: ConfigSPH, containers: tuple[OpenBox, ...] = ()) -> None:
+    def __init__(
+        self,
+        model: newton.Model,
+        config: ConfigSPH,
+        containers: tuple[OpenBox, ...] = (),
+        vessels: tuple[Vessel, ...] = (),
+    ) -> None:
         super().__init__(model)
         if model.particle_count == 0:
             raise ValueError("SolverSPH: the model has no particles; add the fluid to the builder first")
@@ -85,7 +94,7 @@ class SolverSPH(SolverBase):
         self.world_count = max(1, model.world_count)
         with wp.ScopedDevice(model.device):
             self._read_worlds()
-            self._sample_solids(containers)
+            self._sample_solids(containers, vessels)
             self._allocate()
             self.method = self._method()
 
@@ -120,11 +129,11 @@ class SolverSPH(SolverBase):
             with wp.ScopedDevice(self.model.device):
                 self._read_worlds()
 
-    def _sample_solids(self, containers: tuple[OpenBox, ...]) -> None:
+    def _sample_solids(self, containers: tuple[OpenBox, ...], vessels: tuple[Vessel, ...]) -> None:
         """Fill the solids with particles, and bring walls and worlds into order."""
         model = self.model
         place, world = model.particle_q.numpy(), np.maximum(model.particle_world.numpy(), 0)
-        solids = sample_boundary(model, self.config, containers, place, world)
+        solids = sample_boundary(model, self.config, containers, place, world, vessels)
         fixed = int(solids.body_first[0])
         self.wall_count, self.body_particle_count = fixed, len(solids.local) - fixed
         self.boundary_count = len(solids.local)
@@ -147,7 +156,9 @@ class SolverSPH(SolverBase):
             solids.crowd((1.0 + self.config.skin) * self.config.support),
         )
         self.programs = self.search.programs
-        self.faces = FixedFaces(model, self.world_count, containers)
+        own = frozenset().union(*(vessel.shapes for vessel in vessels))
+        self.faces = FixedFaces(model, self.world_count, containers, own)
+        self.skins = Skins(model, self.world_count, self.config.spacing, own)
 
     def _allocate(self) -> None:
         bodies, walls = self.body_particle_count, self.search.walls
@@ -174,6 +185,7 @@ class SolverSPH(SolverBase):
         self.search.stale = True
         self.push.forget()
         self.full.zero_()
+        self.skins.forget()
 
     def take_wall_impulse(self) -> np.ndarray:
         """Impulse that each world's fluid gave to all that stands still since the last call, (W, 3) [N s]."""
@@ -259,8 +271,8 @@ class SolverSPH(SolverBase):
             self._move_bodies(state_in)
             self.search.update(state_in.particle_q, self.body_position, lambda: self._gather(state_in))
             self._update_pressure(state_out, dt)
-            self._move_fluid(state_out, dt)
-            self._return_wrenches(state_in, state_out)
+            self._move_fluid(state_in, state_out, dt)
+            self._return_wrenches(state_in, state_out, dt)
 
     def _move_bodies(self, state: newton.State) -> None:
         if self.body_particle_count:
@@ -341,7 +353,7 @@ class SolverSPH(SolverBase):
                 outputs=[solid.motion, solid.facing],
             )
 
-    def _move_fluid(self, state_out: newton.State, dt: float) -> None:
+    def _move_fluid(self, state_in: newton.State, state_out: newton.State, dt: float) -> None:
         """Momentum: the fluid moves, and its push on the bodies is kept."""
         search = self.search
         fluid, walls, bodies = (kind.species for kind in (search.fluid, search.walls, search.bodies))
@@ -353,10 +365,12 @@ class SolverSPH(SolverBase):
             inputs=[*method, self.model.gravity, fluid, walls, bodies, self.model.particle_mass, dt],
             outputs=[state_out.particle_q, state_out.particle_qd, self._on_walls],
         )
+        if self.config.dimensions == 3:
+            worlds = search.fluid.world
+            if self.wall_count:
+                self.faces.keep_out(worlds, dt, state_out.particle_q, state_out.particle_qd, self._on_walls)
+            self.skins.keep_out(worlds, dt, state_out, state_in, self._on_walls)
         if self.wall_count:
-            if self.faces.count and self.config.dimensions == 3:
-                at = state_out.particle_q, state_out.particle_qd
-                self.faces.keep_out(self.search.fluid.world, dt, *at, self._on_walls)
             self._add_to_walls(self._on_walls, self._world_first, dt)
             if self.body_particle_count:
                 self._add_to_walls(self.push.on_walls, self.push.world_first, dt)
@@ -376,7 +390,7 @@ class SolverSPH(SolverBase):
             outputs=[self._wall_impulse],
         )
 
-    def _return_wrenches(self, state_in: newton.State, state_out: newton.State) -> None:
+    def _return_wrenches(self, state_in: newton.State, state_out: newton.State, dt: float) -> None:
         if not self.body_particle_count:
             return
         wp.launch(
@@ -398,3 +412,4 @@ class SolverSPH(SolverBase):
             inputs=[self.lane_wrench],
             outputs=[self.body_wrench, state_out.body_f],
         )
+        self.skins.give_back(dt, self.body_wrench, state_out.body_f)

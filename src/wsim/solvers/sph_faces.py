@@ -27,9 +27,12 @@ class FixedFaces:
         model: The `newton.Model`, whose planes and boxes that collide and belong to no body are taken.
         world_count: W.
         containers: Tanks of all worlds.
+        spared: Labels of shapes that have skins instead (`wsim.solvers.sph_skins`): their faces meet at edges.
     """
 
-    def __init__(self, model: Any, world_count: int, containers: Sequence[OpenBox]) -> None:
+    def __init__(
+        self, model: Any, world_count: int, containers: Sequence[OpenBox], spared: frozenset[str] = frozenset()
+    ) -> None:
         self._model, self._world_count = model, world_count
         floors = np.full(world_count, np.inf)  # of the lowest hollow in each
         for box in containers:
@@ -39,6 +42,7 @@ class FixedFaces:
         halves = model.shape_scale.numpy().astype(float)
         collides = (model.shape_flags.numpy() & ShapeFlags.COLLIDE_SHAPES) != 0
         fixed = collides & (model.shape_body.numpy() < 0)
+        fixed &= np.array([str(label) not in spared for label in model.shape_label], dtype=bool)
         normals = rotate(poses[:, 3:], np.array([[0.0, 0.0, 1.0]])) if len(poses) else np.zeros((0, 3))
         heights = (normals * poses[:, :3]).sum(axis=1)
         endless = (kinds == GeoType.PLANE) & (halves[:, :2] == 0.0).all(axis=1)
@@ -75,6 +79,8 @@ class FixedFaces:
 
     def keep_out(self, worlds: wp.array, dt: float, position: wp.array, velocity: wp.array, on_walls: wp.array) -> None:
         """Put back what came through a face in the step that ends; arguments as the kernel's."""
+        if not self.count:
+            return
         wp.launch(
             keep_out,
             dim=len(position),

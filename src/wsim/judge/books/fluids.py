@@ -6,7 +6,6 @@ simulator that takes its own sums keeps them to rounding, so what is left tells 
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -48,9 +47,8 @@ def fluid_impulse(recording: Recording) -> Floats | None:
 
 
 def particle_mass(fluid: Fluid) -> float:
-    """Of each of a fluid's particles, which stand for a cell of the lattice that fills its box [kg]."""
-    cells = math.prod(max(1, round(length / fluid.spacing)) for length in fluid.size)
-    return fluid.density * math.prod(fluid.size) / cells
+    """Of each of a fluid's particles, which stand for a cell of the lattice that fills it [kg]."""
+    return fluid.density * fluid.amount / fluid.particles
 
 
 def fluid_books(evidence: Evidence) -> FluidBooks | None:

@@ -35,8 +35,7 @@ class CheckFluidMass(Check):
 
     def _mass(self, evidence: Evidence, fluid: Fluid) -> Finding:
         count = evidence.track(fluid).position.shape[1]
-        cells = math.prod(max(1, round(length / fluid.spacing)) for length in fluid.size)
-        volume = math.prod(fluid.size)
+        cells, volume = fluid.particles, fluid.amount
         inside = sum(self._drowned(evidence, fluid, i) for i in range(len(evidence.world.bodies)))
         value = fluid.density * volume * count / cells
         expected = fluid.density * max(volume - inside, 0.0)

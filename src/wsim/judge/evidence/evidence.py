@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -100,9 +99,8 @@ class Evidence(Recorded):
         chosen = frames[np.linspace(0, len(frames) - 1, min(LEVEL_FRAMES, len(frames))).astype(int)]
         floor = container.inner_center[2] - container.inner_size[2] / 2
         # A particle stands for its cell of the lattice that fills the fluid's box at the start.
-        cells = math.prod(max(1, round(length / fluid.spacing)) for length in fluid.size)
         inside = 1.0 - float(np.mean(self.containment(container, fluid).outside[chosen]))
-        volume = math.prod(fluid.size) / cells * track.position.shape[1] * inside
+        volume = fluid.amount / fluid.particles * track.position.shape[1] * inside
         height = self._level_of_volume(container, floor, volume)
         return Level(height, self._level_seen(fluid, container, track, chosen, height), floor)
 

@@ -71,7 +71,7 @@ def _surface(signals: Signals, evidence: Evidence, fluid: Fluid) -> tuple[Array,
     inside = evidence.containment(container, fluid).inside()
     end = float(inside[track.time >= evidence.window_start - 1e-9].mean())
     area = container.inner_size[0] * container.inner_size[1]
-    missing = (end - inside) * math.prod(fluid.size) / area
+    missing = (end - inside) * fluid.amount / area
     return (level.height - missing[latest(track.time, signals.time)])[None], level.floor
 
 
@@ -192,7 +192,7 @@ def _level_in(asked: LevelIn, signals: Signals) -> list[Measure]:
     evidence, fluid = signals.fluid(asked.fluid)
     container, track = signals.container(asked.ref), evidence.track(fluid)
     share = evidence.containment(container, fluid).inside()[latest(track.time, signals.time)]
-    value = share * math.prod(fluid.size) / (container.inner_size[0] * container.inner_size[1])
+    value = share * fluid.amount / (container.inner_size[0] * container.inner_size[1])
     tolerance = asked.within or SPACINGS * fluid.spacing
     source = "the objective's" if asked.within else f"{SPACINGS:g} particle spacings: what the particles resolve"
     return [
@@ -281,7 +281,7 @@ def _fill(asked: Fills, finding: Finding, evidence: Evidence) -> RepairTarget:
     fluid, container = evidence.fluid(finding.prim or ""), evidence.container(evidence.prim(asked.ref))
     if container is None:
         return RepairTarget(kind="missing object", direction="add", why="there is nothing to fill")
-    room, volume = math.prod(container.inner_size), math.prod(fluid.size)
+    room, volume = math.prod(container.inner_size), fluid.amount
     if volume > room:
         top = volume / math.prod(container.inner_size[:2])
         return RepairTarget(

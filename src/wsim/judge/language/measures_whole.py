@@ -248,7 +248,7 @@ def _momentum(signals: Signals, rows: list[int]) -> tuple[Floats, Floats]:
 def _mass(asked: Conserves, signals: Signals) -> Measure:
     """What of a fluid is no longer where it can be counted: outside of its container, or not finite."""
     evidence, fluid = signals.fluid(asked.objects[0])
-    track, total = evidence.track(fluid), math.prod(fluid.size) * fluid.density
+    track, total = evidence.track(fluid), fluid.amount * fluid.density
     finite = np.isfinite(track.position).all(axis=2)
     there = finite.mean(axis=1) if fluid.container is None else 1.0 - evidence.outside(fluid)
     there = np.minimum(there, finite.mean(axis=1))

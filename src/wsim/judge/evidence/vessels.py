@@ -1,0 +1,49 @@
+"""Where a fluid's particles are, seen from a vessel of any shape: by the convex hull of what it is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from wsim.geometry.rotations import conjugate, rotate
+from wsim.geometry.shapes import Solid
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.scene.world import Shape
+
+    Floats = NDArray[np.float64]
+    Bools = NDArray[np.bool_]
+
+LID = 0.5  # of the upward axis that a face's normal has: the hull closes the mouth with it
+
+
+def strayed(shapes: Sequence[Shape], pose: Floats, position: NDArray[np.float32], slack: float, up: Floats) -> Bools:
+    """Which particles are beside or under a vessel, as of a tank: over its rim is not (T, N).
+
+    Args:
+        shapes: Of the vessel, in its frame.
+        pose: Of that frame at each of the particles' frames (T, 7) [m, xyzw].
+        position: Of the particles (T, N, 3) [m].
+        slack: How far beyond the hull they may be [m].
+        up: Against gravity, in the world (3,).
+    """
+    walls = walls_of(shapes, rotate(conjugate(pose[0, 3:]), up))
+    found = np.empty(position.shape[:2], dtype=bool)
+    for t, points in enumerate(position):  # one frame at a time: a recording may be larger than a cache
+        places = rotate(conjugate(pose[t, 3:]), points - pose[t, :3])
+        found[t] = (places @ walls[:, :3].T > walls[:, 3] + slack).any(axis=1)
+    return found
+
+
+def walls_of(shapes: Sequence[Shape], up: Floats) -> Floats:
+    """The faces of the hull, but for those that close the mouth, (K, 4): behind one is where n . x <= d."""
+    surfaces = Solid([shape for shape in shapes if shape.collides]).surfaces
+    equations = ConvexHull(np.vstack([surface.vertices for surface in surfaces])).equations
+    faces = np.hstack([equations[:, :3], -equations[:, 3:]])
+    walls: Floats = faces[faces[:, :3] @ up < LID]
+    return walls
