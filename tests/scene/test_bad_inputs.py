@@ -302,10 +302,10 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
     "fluid": (
         {"name": "new", "spacing": 0.1, "size": (0.4, 0.4, 0.4), "position": (0.0, 0.0, 9.0)},
         {
-            "name": "new name", "spacing": "number > 0", "fills": "tank", "level": "number >= 0", "size": "sizes",
-            "position": "three numbers", "container": "tank", "velocity": "three numbers", "density": "number > 0",
-            "viscosity": "number >= 0", "speed_of_sound": "number >= 0", "color": "colour",
-            "attenuation_length": "number >= 0",
+            "name": "new name", "spacing": "number > 0", "fills": "tank", "level": "number >= 0",
+            "volume": "number > 0", "size": "sizes", "position": "three numbers", "container": "tank",
+            "velocity": "three numbers", "density": "number > 0", "viscosity": "number >= 0",
+            "speed_of_sound": "number >= 0", "color": "colour", "attenuation_length": "number >= 0",
         },
     ),
     "tap": (

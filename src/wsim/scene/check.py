@@ -348,6 +348,7 @@ def _fluid(prim: Usd.Prim) -> Iterator[str]:
         *_bounded(prim.GetAttribute("wsim:speedOfSound"), 1e4, "m/s", zero=True),
         *_bounded(prim.GetAttribute("wsim:attenuationLength"), MAX_SIZE, "m", zero=True),
         *_within(prim.GetAttribute("wsim:velocity"), MAX_SPEED, "m/s"),
+        *_bounded(prim.GetAttribute("wsim:volume"), 1e9, "m^3", zero=True),
     ]
     yield from problems
     size, spacing = prim.GetAttribute("wsim:size").Get(), prim.GetAttribute("wsim:spacing").Get()

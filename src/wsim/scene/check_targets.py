@@ -106,12 +106,16 @@ def _solid(prim: Usd.Prim) -> bool:
     return any(part.HasAPI(UsdPhysics.CollisionAPI) for part in Usd.PrimRange(prim, Usd.TraverseInstanceProxies()))
 
 
+def _holds(prim: Usd.Prim) -> bool:
+    return schema.has(prim, schema.CONTAINER) or _solid(prim)
+
+
 _FILTERED = (UsdPhysics.RigidBodyAPI, UsdPhysics.CollisionAPI, UsdPhysics.ArticulationRootAPI)
 _KINDS: dict[str, tuple[Callable[[Usd.Prim], bool], str]] = {
     "physics:filteredPairs": (_collides, "a rigid body, a collider or an articulation"),
     "physics:filteredGroups": (lambda prim: prim.IsA(UsdPhysics.CollisionGroup), "a PhysicsCollisionGroup"),
     "physics:simulationOwner": (lambda prim: prim.IsA(UsdPhysics.Scene), "a PhysicsScene"),
-    "wsim:container": (lambda prim: schema.has(prim, schema.CONTAINER), "a container"),
+    "wsim:container": (_holds, "a container, or a vessel that collides"),
     "wsim:body": (lambda prim: bool(prim.HasAPI(UsdPhysics.RigidBodyAPI)), "a rigid body"),
     "wsim:follows": (lambda prim: bool(prim.HasAPI(UsdPhysics.RigidBodyAPI)), "a rigid body"),
     "wsim:joints": (lambda prim: prim.IsA(UsdPhysics.Joint), "a joint"),

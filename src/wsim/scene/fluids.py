@@ -48,6 +48,7 @@ class Fluids(Tanks):
         spacing: float,
         fills: Handle | str | None = None,
         level: float | None = None,
+        volume: float | None = None,
         size: Sequence[float] | None = None,
         position: Sequence[float] | None = None,
         container: Handle | str | None = None,
@@ -58,13 +59,16 @@ class Fluids(Tanks):
         color: Sequence[float] = _WATER,
         attenuation_length: float | None = None,
     ) -> Fluid:
-        """Fill a tank up to a level, or stand a free box of fluid somewhere.
+        """Fill a tank or another vessel, or stand a free box of fluid somewhere.
 
         Args:
             name: Name of the prim.
             spacing: Distance between particles [m].
-            fills: The tank to fill, with `level`.
-            level: Depth above the tank's inner floor [m]; 0 for what a `tap` is to pour.
+            fills: What to fill, with `level` or `volume`: a tank, or anything that is hollow as it stands: a mesh, an
+                asset such as a bowl, what several shapes make up. Tilted it holds less; closed all round it holds most.
+            level: Depth above the lowest point of its hollow, a tank's inner floor [m]; of a tank 0 for what a `tap` is
+                to pour.
+            volume: Instead of `level`: of the fluid [m^3].
             size: Instead of `fills`: edges (x, y, z) of a box of fluid [m], with `position`.
             position: Centre of that box [m].
             container: The tank that box stands in; found by itself where the box lies inside one.
@@ -78,26 +82,30 @@ class Fluids(Tanks):
                 given, it is as clear as water, however large.
 
         Raises:
-            SceneError: If the fluid does not fit its tank, is thinner than one particle, overlaps another fluid, or
-                a number is out of range.
+            SceneError: If the fluid does not fit what it fills, that has no hollow, it is thinner than one particle or
+                overlaps another fluid, or a number is out of range.
         """
         call = Call("fluid", name)
         path = self._path(call)
         step = call.size("spacing", spacing)
+        amount: float | None = None
+        holder: str | None
         if fills is not None:
             if size is not None or position is not None or container is not None:
                 call.fail("fills is given with size, position or container; give fills and level, or size and position")
-            tank: Tank | None = self._tank(call, "fills", fills)
-            assert tank is not None
-            edges, center = _filling(call, tank, level)
-            _check_thickness(call, tank.inner_size, step, "inner_size", f'tank "{tank.name}"')
+            if (level is None) == (volume is None):
+                what = "without level" if level is None else "with level and volume"
+                call.fail(f"fills is given {what}: give level, the depth above its inner floor in m, or volume in m^3")
+            holder, edges, center, amount = self._filling(call, fills, level, volume, step)
         else:
-            if level is not None:
-                call.fail(f"level = {shown(level)} needs fills=, the tank to fill")
+            for field, value in (("level", level), ("volume", volume)):
+                if value is not None:
+                    call.fail(f"{field} = {shown(value)} needs fills=, the tank or vessel to fill")
             if size is None or position is None:
                 call.fail("give fills= and level=, or size= and position= of a free box of fluid")
             edges, center = call.sizes("size", size), call.position("position", position)
             tank = self._holder(call, edges, center, container)
+            holder = tank.path if tank else None
         if edges[2] > 0.0:
             _check_thickness(call, edges, step, "level" if fills is not None else "size", "the fluid")
             call.particles(edges, step)
@@ -114,19 +122,21 @@ class Fluids(Tanks):
                 call.within("speed_of_sound", speed_of_sound, 0.0, 1e4, "m/s"),
             ),
         }
+        if amount is not None:
+            values["volume"] = (Sdf.ValueTypeNames.Double, amount)
         opacity = _OPACITY
         if attenuation_length is not None:
             length = call.within("attenuation_length", attenuation_length, 0.0, MAX_SIZE, "m")
             values["attenuationLength"] = (Sdf.ValueTypeNames.Double, length)
             opacity = 1.0 - math.exp(-max(edges) / length) if length > 0.0 else 1.0
-        self._author_fluid(fluid, values, tank, call.color("color", color), opacity)
+        self._author_fluid(fluid, values, holder, call.color("color", color), opacity)
         return fluid
 
     def _author_fluid(
         self,
         fluid: Fluid,
         values: dict[str, tuple[Sdf.ValueTypeName, object]],
-        tank: Tank | None,
+        holder: str | None,
         color: Vec3,
         opacity: float,
     ) -> None:
@@ -135,8 +145,8 @@ class Fluids(Tanks):
         set_pose(prim, fluid.center)
         schema.apply(prim, schema.FLUID, values)
         relation = prim.CreateRelationship("wsim:container", False)
-        if tank is not None:
-            relation.SetTargets([Sdf.Path(tank.path)])
+        if holder is not None:
+            relation.SetTargets([Sdf.Path(holder)])
         cube = UsdGeom.Cube.Define(self._stage, f"{fluid.path}/volume")
         cube.CreateSizeAttr(1.0)
         # One that is empty yet is a film, which carries its look.
@@ -149,6 +159,20 @@ class Fluids(Tanks):
     def _liquid(self, name: str, color: Vec3, opacity: float) -> Material:
         call = Call("fluid", name)
         return self._surface(call, None, None, None, color, opacity=opacity, look=Look(roughness=0.02, ior=1.33))
+
+    def _filling(
+        self, call: Call, fills: Handle | str, level: float | None, volume: float | None, spacing: float
+    ) -> tuple[str, Vec3, Vec3, float | None]:
+        """What is filled, edges and centre of the fluid's box [m], and its volume [m^3] where it is no box."""
+        prim = self._find(call, "fills", fills)
+        tank = self._tanks.get(str(prim.GetPath()))
+        if tank is not None:
+            _check_thickness(call, tank.inner_size, spacing, "inner_size", f'tank "{tank.name}"')
+            return tank.path, *_filling(call, tank, level, volume), None
+        from wsim.scene.vessels import Vessel  # with pydantic, and few programs fill another vessel
+
+        vessel = Vessel(call, prim, spacing)
+        return vessel.path, *vessel.filled(vessel.level_of(level, volume), spacing)
 
     def _tank(self, call: Call, field: str, what: Handle | str) -> Tank:
         path = str(self._find(call, field, what).GetPath())
@@ -180,18 +204,19 @@ class Fluids(Tanks):
                 call.fail(f"the fluid overlaps {shown(other.name)}; move it or make one of them smaller")
 
 
-def _filling(call: Call, tank: Tank, level: float | None) -> tuple[Vec3, Vec3]:
+def _filling(call: Call, tank: Tank, level: float | None, volume: float | None) -> tuple[Vec3, Vec3]:
     """Size and centre of the fluid in a tank [m]."""
+    x, y, high = tank.inner_size
     if level is None:
-        call.fail("fills is given without level, the depth above the tank's inner floor in m")
-    depth = call.number("level", level, "m")
-    if depth != 0.0:
-        depth = call.size("level", level)
-    if depth > tank.inner_size[2] + _TOUCH:
-        call.fail(
-            f'level = {depth:g} m is above the rim of tank "{tank.name}": its hollow is {tank.inner_size[2]:g} m high'
-        )
-    x, y, _ = tank.inner_size
+        amount = call.positive("volume", volume, 1e9, "m^3")
+        depth, what = amount / (x * y), f"volume = {amount:g} m^3"
+    else:
+        depth = call.number("level", level, "m")
+        if depth != 0.0:
+            depth = call.size("level", level)
+        what = f"level = {depth:g} m"
+    if depth > high + _TOUCH:
+        call.fail(f'{what} is above the rim of tank "{tank.name}": its hollow is {high:g} m high')
     return (x, y, depth), (tank.inner_center[0], tank.inner_center[1], tank.floor + depth / 2)
 
 

@@ -117,7 +117,7 @@ class Container(_Model):
 
 
 class Fluid(_Model):
-    """A box of fluid as it stands at t = 0."""
+    """A box of fluid as it stands at t = 0, or what is in that box of a vessel's hollow."""
 
     prim: str
     density: float  # [kg/m^3]
@@ -127,7 +127,8 @@ class Fluid(_Model):
     center: Vec3  # [m], world
     velocity: Vec3 = (0.0, 0.0, 0.0)  # [m/s], world
     speed_of_sound: float = 0.0  # [m/s]; 0 lets the solver choose
-    container: str | None = None  # prim of the container it fills
+    container: str | None = None  # prim of the container it fills, or of the vessel
+    volume: float | None = None  # [m^3], of what fills the hollow of a vessel up to the top of its box; else the box's
     color: Vec3 = (0.15, 0.4, 0.6)
     attenuation_length: float | None = (
         None  # [m], after which 1/e of the light is left; None: clear, as the box is large
@@ -135,10 +136,21 @@ class Fluid(_Model):
     line: str | None = None
 
     @property
+    def amount(self) -> float:
+        """Its volume [m^3]."""
+        return math.prod(self.size) if self.volume is None else self.volume
+
+    @property
+    def particles(self) -> int:
+        """How many particles stand for it, where no body is in it and it is not of no height."""
+        if self.volume is None:
+            return math.prod(max(1, round(length / self.spacing)) for length in self.size)
+        return max(1, round(self.volume / self.spacing**3))
+
+    @property
     def cell(self) -> float:
-        """Volume that a particle stands for [m^3]: a cell of the lattice that fills its box, or a spacing's cube."""
-        cells = math.prod(max(1, round(length / self.spacing)) for length in self.size)
-        return math.prod(self.size) / cells or self.spacing**3
+        """Volume that a particle stands for [m^3]: a cell of the lattice that fills it, or a spacing's cube."""
+        return self.amount / self.particles or self.spacing**3
 
 
 class Motor(_Model):

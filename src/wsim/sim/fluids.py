@@ -1,4 +1,4 @@
-"""Boxes of fluid → particles on a lattice."""
+"""Fluid in boxes and vessels → particles."""
 
 from __future__ import annotations
 
@@ -14,11 +14,14 @@ from wsim.errors import UserError
 from wsim.geometry.filled import box_lattice
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.geometry.shapes import into, kind_of, reach
-from wsim.scene.world import Fluid, Shape, World
+from wsim.scene.hollows import hollow_of, surface_of_wall
+from wsim.scene.world import Fluid, Quat, Shape, Vec3, World
+from wsim.sim.filling import spread
 from wsim.sim.openings import fastest_poured, waiting
-from wsim.solvers.inside import depth_in, solid_of
+from wsim.solvers.inside import depth_in, is_open, solid_of
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.sph_config import ConfigSPH
+from wsim.solvers.vessels import Vessel
 
 SOUND_OVER_SPEED = 10.0  # keeps the density within 1 % (Monaghan 1994)
 
@@ -49,6 +52,32 @@ def containers_of(world: World, k: int = -1) -> list[OpenBox]:
         OpenBox(c.inner_center, c.inner_size, c.rotation, walls.get(c.prim, frozenset()), world=k)
         for c in world.containers
     ]
+
+
+def vessels_of(world: World, k: int = -1) -> list[Vessel]:
+    """What fluid fills beside tanks in world k, or in all, with the labels of the shapes that each stands for."""
+    found = {}
+    for fluid in world.fluids:
+        if fluid.volume is not None and fluid.container not in found:
+            shapes, _, turn = _held_by(fluid, world)
+            walls = [shape for shape in shapes if shape.collides and shape.kind != "plane"]
+            found[fluid.container] = Vessel(
+                surfaces=tuple(surface_of_wall(shape) for shape in walls),
+                upright=turn,
+                shapes=frozenset(shape.prim for shape in walls),
+                body=fluid.container if any(body.prim == fluid.container for body in world.bodies) else None,
+                world=k,
+            )
+    return list(found.values())
+
+
+def _held_by(fluid: Fluid, world: World) -> tuple[list[Shape], Vec3, Quat]:
+    """The shapes of what holds a fluid, and the pose of their frame."""
+    for body in world.bodies:
+        if body.prim == fluid.container:
+            return body.shapes, body.position, body.rotation
+    shapes = next((static.shapes for static in world.statics if static.prim == fluid.container), [])
+    return shapes, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 
 
 def common_fluid(world: World) -> Fluid:
@@ -128,6 +157,8 @@ def _over_all(fluid: Fluid, world: World) -> float:
 
 
 def _fills(fluid: Fluid, world: World) -> bool:
+    if fluid.volume is not None:
+        return True
     box = next((c for c in world.containers if c.prim == fluid.container), None)
     return box is not None and all(
         math.isclose(fluid.size[k], box.inner_size[k], abs_tol=fluid.spacing) for k in (0, 1)
@@ -140,6 +171,7 @@ def mesh_depths(builder: Any, world: World) -> dict[str, list[Depth]]:
     As the solver samples them: of a mesh it may be the convex hull, or the parts, that are there.
     """
     owners = {body.prim for body in world.bodies} | {static.prim for static in world.statics}
+    filled = {fluid.container for fluid in world.fluids if fluid.volume is not None}
     found: dict[str, list[Depth]] = {}
     for k, kind in enumerate(builder.shape_type):
         owner = str(builder.shape_label[k])
@@ -150,7 +182,10 @@ def mesh_depths(builder: Any, world: World) -> dict[str, list[Depth]]:
         source, pose = builder.shape_source[k], np.array(builder.shape_transform[k])
         vertices = np.asarray(source.vertices, dtype=float).reshape(-1, 3) * np.array(builder.shape_scale[k])
         vertices = rotate(pose[3:], vertices) + pose[:3]
-        solid = solid_of(vertices, np.asarray(source.indices).reshape(-1, 3), kind == GeoType.CONVEX_MESH)
+        triangles = np.asarray(source.indices).reshape(-1, 3)
+        if owner in filled and kind == GeoType.MESH and is_open(vertices, triangles):
+            continue  # a vessel that is a sheet: nothing is inside
+        solid = solid_of(vertices, triangles, kind == GeoType.CONVEX_MESH)
         found.setdefault(owner, []).append(depth_in(solid))
     return found
 
@@ -162,42 +197,61 @@ def seed(fluid: Fluid, world: World, config: ConfigSPH, meshes: dict[str, list[D
     The pressure is hydrostatic.
 
     Args:
-        fluid: The box; one of no height holds nothing yet.
+        fluid: The box, or what fills a vessel; a box of no height holds nothing yet.
         world: For gravity, taps, and the bodies and fixed objects that stand in the fluid.
         config: Settings of the method.
         meshes: What `mesh_depths` found of those.
+
+    Raises:
+        UserError: If there is no room for it.
     """
-    cells = box_lattice(np.array(fluid.size), fluid.spacing)
-    volume = float(cells.volume[0]) or fluid.spacing**3
-    position = _standing(fluid, world, cells.position, meshes) if fluid.size[2] > 0.0 else np.zeros((0, 3))
+    position = _standing(fluid, world, meshes) if fluid.size[2] > 0.0 else np.zeros((0, 3))
     depth = 0.5 * fluid.size[2] + fluid.center[2] - position[:, 2]
     pressure = fluid.density * abs(world.gravity[2]) * np.maximum(depth, 0.0)
-    there, count = len(position), waiting(fluid, world, config, volume)
+    there, count = len(position), waiting(fluid, world, config, fluid.cell)
     return Seeded(
         prim=fluid.prim,
         position=np.concatenate([position, np.zeros((count, 3))]),
         velocity=np.repeat([fluid.velocity, (0.0, 0.0, 0.0)], [there, count], axis=0),
-        mass=np.full(there + count, fluid.density * volume),
+        mass=np.full(there + count, fluid.density * fluid.cell),
         pressure=np.append(pressure, np.zeros(count)),
         flags=np.repeat(np.array([int(ParticleFlags.ACTIVE), 0], dtype=np.int32), [there, count]),
     )
 
 
-def _standing(fluid: Fluid, world: World, cells: Array, meshes: dict[str, list[Depth]]) -> Array:
-    """Where particles of a box of fluid are, of cells in its frame: not where a solid already is, (n, 3) [m]."""
-    rotation = next((c.rotation for c in world.containers if c.prim == fluid.container), (0.0, 0.0, 0.0, 1.0))
-    position = rotate(np.array(rotation), cells) + np.array(fluid.center)
+def _standing(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Array:
+    """Where particles of a fluid are: not where a solid already is, (n, 3) [m]."""
+    position = _in_vessel(fluid, world) if fluid.volume is not None else _in_box(fluid, world)
     free = np.ones(len(position), dtype=bool)
-    margin, tanks = 0.4 * fluid.spacing, {container.prim for container in world.containers}
+    margin, around = 0.4 * fluid.spacing, {container.prim for container in world.containers}
+    if fluid.volume is not None:
+        around.add(str(fluid.container))
     for body in world.bodies:
-        local = rotate(conjugate(np.array(body.rotation)), position - np.array(body.position))
-        free &= ~_inside(body.shapes, local, margin, meshes.get(body.prim, []))
+        if body.prim not in around:
+            local = rotate(conjugate(np.array(body.rotation)), position - np.array(body.position))
+            free &= ~_inside(body.shapes, local, margin, meshes.get(body.prim, []))
     for static in world.statics:
-        if static.prim not in tanks:  # whose fluid is cut to its walls
+        if static.prim not in around:  # whose fluid is cut to its walls
             free &= ~_inside(static.shapes, position, margin, meshes.get(static.prim, []))
     if not free.any():
         raise UserError(f"{fluid.prim}: bodies leave no room for fluid of spacing {fluid.spacing} m in {fluid.size} m")
     return position[free]
+
+
+def _in_box(fluid: Fluid, world: World) -> Array:
+    """Places on a lattice in the fluid's box, turned as its container is (n, 3) [m]."""
+    cells = box_lattice(np.array(fluid.size), fluid.spacing)
+    rotation = next((c.rotation for c in world.containers if c.prim == fluid.container), (0.0, 0.0, 0.0, 1.0))
+    return rotate(np.array(rotation), cells.position) + np.array(fluid.center)
+
+
+def _in_vessel(fluid: Fluid, world: World) -> Array:
+    """Places in the hollow of the fluid's vessel (n, 3) [m]."""
+    try:
+        hollow = hollow_of(*_held_by(fluid, world), fluid.spacing)
+    except ValueError as error:
+        raise UserError(f"{fluid.prim}: {fluid.container} holds no fluid: {error}; name a vessel") from error
+    return spread(hollow.filling(fluid.center[2] + 0.5 * fluid.size[2]), fluid.spacing, fluid.particles)
 
 
 def add_seeded(builder: Any, worlds: Sequence[World], config: ConfigSPH) -> tuple[list[dict[str, slice]], Array]:

@@ -24,7 +24,17 @@ from wsim.sim.contacts import harden_contacts, let_roll, rows_of_rolling, spare_
 from wsim.sim.cord_shapes import add_cord_shapes
 from wsim.sim.cords import add_cords
 from wsim.sim.drives import add_drives
-from wsim.sim.fluids import Seeded, add_seeded, containers_of, largest_step, mesh_depths, of_worlds, seed, sph_config
+from wsim.sim.fluids import (
+    Seeded,
+    add_seeded,
+    containers_of,
+    largest_step,
+    mesh_depths,
+    of_worlds,
+    seed,
+    sph_config,
+    vessels_of,
+)
 from wsim.sim.forward import forward_only
 from wsim.sim.numbers import add_worlds, differences, texts
 from wsim.sim.openings import drains_of, taps_of
@@ -39,6 +49,7 @@ from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
 from wsim.solvers.sph_mouths import Drain, Tap
 from wsim.solvers.surface_contacts import SurfaceParts
+from wsim.solvers.vessels import Vessel
 
 forward_only()
 
@@ -63,6 +74,7 @@ class Built:
     containers: tuple[OpenBox, ...]
     taps: tuple[Tap, ...]
     drains: tuple[Drain, ...]
+    vessels: tuple[Vessel, ...]
     time_step: TimeStep
     breakable: list[list[Breakable]]
     surfaces: SurfaceParts | None = None  # what collides by its triangles
@@ -289,6 +301,7 @@ def _finalized(builder: Any, ones: Sequence[_One], config: Any | None, step: Tim
         containers=tuple(_of_each(ones, containers_of)),
         taps=tuple(_of_each(ones, taps_of)),
         drains=tuple(_of_each(ones, drains_of)),
+        vessels=tuple(_of_each(ones, vessels_of)),
         time_step=step,
         breakable=[one.breakable for one in ones],
         surfaces=first.surfaces,

@@ -202,7 +202,7 @@ class Simulation:
         built = self.built
         if not built.sph:
             return None
-        return SolverSPH(self.model, built.sph, built.containers, built.taps, built.drains)
+        return SolverSPH(self.model, built.sph, built.containers, built.taps, built.drains, built.vessels)
 
     def step(self) -> None:
         """Advance by one time step: the fluid pushes the bodies, then the bodies move."""

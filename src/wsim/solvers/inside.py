@@ -16,7 +16,15 @@ Array = np.ndarray
 def solid_of(vertices: Array, triangles: Array, convex: bool) -> trimesh.Trimesh:
     """A mesh as the fluid meets it: its convex hull where it is to be convex, or has holes."""
     mesh = trimesh.Trimesh(vertices, triangles, process=False)
+    mesh.merge_vertices(merge_tex=True, merge_norm=True)
     return mesh.convex_hull if convex or not mesh.is_watertight else mesh
+
+
+def is_open(vertices: Array, triangles: Array) -> bool:
+    """Whether a mesh has an edge of one triangle alone, corners at one place taken as one."""
+    mesh = trimesh.Trimesh(vertices, triangles, process=False)
+    mesh.merge_vertices(merge_tex=True, merge_norm=True)
+    return not mesh.is_watertight
 
 
 def depth_in(solid: trimesh.Trimesh) -> Callable[[Array], Array]:

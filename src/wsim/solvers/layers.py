@@ -41,7 +41,7 @@ def mesh_layers(vertices: Array, triangles: Array, spacing: float, convex: bool)
     depth = depth_of(cells)
     deep = depth >= RELAXED * spacing
     near = ~deep & (depth > -float(np.linalg.norm(edge)))
-    outer = _spread(cells[near], depth[near], edge, spacing, depth_of)
+    outer = spread_layers(cells[near], depth[near], edge, spacing, depth_of)
     position = np.concatenate([outer.position, cells[deep]])
     volume = np.concatenate([outer.volume, np.full(int(deep.sum()), np.prod(edge))])
     if len(position) == 0:
@@ -72,13 +72,13 @@ def mesh_part(
     cells, depth = cells[depth < shell], depth[depth < shell]
     deep = depth >= RELAXED * spacing
     near = ~deep & (depth > -float(np.linalg.norm(edge)))
-    outer = _spread(cells[near], depth[near], edge, spacing, depth_of, *ROUGHLY)
+    outer = spread_layers(cells[near], depth[near], edge, spacing, depth_of, *ROUGHLY)
     inside = np.clip(outer.position, low, np.nextafter(high, low))
     volume = np.concatenate([outer.volume, np.full(int(deep.sum()), np.prod(edge))])
     return Samples(np.concatenate([inside, cells[deep]]), volume)
 
 
-def _spread(
+def spread_layers(
     cells: Array,
     depth: Array,
     edge: Array,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,6 +17,7 @@ from wsim.geometry.rotations import rotate
 from wsim.solvers.layers import mesh_layers
 from wsim.solvers.sampling import container_walls
 from wsim.solvers.sph_config import ConfigSPH
+from wsim.solvers.vessels import Vessel
 
 Array = np.ndarray
 
@@ -101,18 +103,20 @@ def sample_shape(kind: int, scale: Array, source: Any, spacing: float, plane: bo
     return None
 
 
-def sample_bodies(model: Any, config: ConfigSPH) -> Boundary:
-    """Sample every colliding shape of a model's bodies.
+def sample_bodies(model: Any, config: ConfigSPH, vessels: Sequence[Vessel] = ()) -> Boundary:
+    """Sample every colliding shape of a model's bodies, and the walls of those that are vessels.
 
     Args:
         model: The `newton.Model`.
         config: For the spacing and the dimensions.
+        vessels: What holds fluid beside tanks; the shapes of one are its walls.
     """
     bodies, poses, kinds = model.shape_body.numpy(), model.shape_transform.numpy(), model.shape_type.numpy()
     scales, flags = model.shape_scale.numpy(), model.shape_flags.numpy()
+    walls = frozenset().union(*(vessel.shapes for vessel in vessels))
     moving: list[list[tuple[Array, Array]]] = [[] for _ in range(model.body_count)]
     for shape in range(model.shape_count):
-        if bodies[shape] < 0 or not flags[shape] & ShapeFlags.COLLIDE_SHAPES:
+        if bodies[shape] < 0 or not flags[shape] & ShapeFlags.COLLIDE_SHAPES or model.shape_label[shape] in walls:
             continue
         kind, source = int(kinds[shape]), model.shape_source[shape]
         found = sample_shape(kind, scales[shape], source, config.spacing, config.dimensions == 2)
@@ -122,7 +126,22 @@ def sample_bodies(model: Any, config: ConfigSPH) -> Boundary:
             continue
         position = rotate(poses[shape][3:], found.position) + poses[shape][:3]
         moving[bodies[shape]].append((position, found.volume))
+    _add_vessels(model, config.spacing, vessels, moving)
     return _join(moving, model.body_world.numpy() if model.body_count else np.zeros(0, int))
+
+
+def _add_vessels(
+    model: Any, spacing: float, vessels: Sequence[Vessel], moving: list[list[tuple[Array, Array]]]
+) -> None:
+    """Add the walls of vessels that are bodies to those of their bodies."""
+    labels, worlds = [str(label) for label in model.body_label], model.body_world.numpy()
+    for vessel in vessels:
+        if vessel.body is None:
+            continue
+        found = vessel.walls(spacing)
+        for body, label in enumerate(labels):
+            if label == vessel.body and vessel.world in (-1, int(worlds[body])):
+                moving[body].append((found.position, found.volume))
 
 
 def sample_container(box: OpenBox, config: ConfigSPH) -> tuple[Array, Array]:

@@ -25,8 +25,10 @@ from wsim.solvers.sph_openings import ROOM, Openings
 from wsim.solvers.sph_particles import SortedParticles
 from wsim.solvers.sph_push import BodyPush
 from wsim.solvers.sph_search import ParticleSearch
+from wsim.solvers.sph_skins import Skins
 from wsim.solvers.sph_solids import FixedSolids
 from wsim.solvers.sph_wall_impulse import LEAST_LANES, WallImpulse
+from wsim.solvers.vessels import Vessel
 
 VENTED = 0.5  # times c / h: pressure leaves by a void in the time in which sound crosses a kernel's support
 
@@ -52,6 +54,7 @@ class SolverSPH(SolverBase):
         taps: Where water comes in; the model's particles that are not `ParticleFlags.ACTIVE` wait for it. Make states
             after the solver: it puts the first of them into the taps' pipes.
         drains: Where water leaves.
+        vessels: What else holds the fluid.
 
     Attributes:
         openings: The taps and drains; None without any.
@@ -89,6 +92,7 @@ class SolverSPH(SolverBase):
         containers: tuple[OpenBox, ...] = (),
         taps: Sequence[Tap] = (),
         drains: Sequence[Drain] = (),
+        vessels: Sequence[Vessel] = (),
     ) -> None:
         super().__init__(model)
         if model.particle_count == 0:
@@ -107,7 +111,7 @@ class SolverSPH(SolverBase):
             self.openings = (
                 Openings(model, config, world, self.rest_density.numpy(), taps, drains) if taps or drains else None
             )
-            self._sample_solids(containers, world)
+            self._sample_solids(containers, vessels, world)
             self._allocate()
             self.method = self._method()
 
@@ -143,16 +147,16 @@ class SolverSPH(SolverBase):
             with wp.ScopedDevice(self.model.device):
                 self._read_worlds()
 
-    def _sample_solids(self, containers: tuple[OpenBox, ...], world: np.ndarray) -> None:
+    def _sample_solids(self, containers: tuple[OpenBox, ...], vessels: Sequence[Vessel], world: np.ndarray) -> None:
         """Fill the solids with particles: bodies, and what stands still where the fluid is or comes to."""
         model = self.model
         self._fluid_world = world
         place, home = model.particle_q.numpy(), world
         if self.openings:
             place, home = self.openings.known(place, world)
-        self.fixed = FixedSolids(model, self.config, containers)
+        self.fixed = FixedSolids(model, self.config, containers, vessels)
         self.fixed.start(place, home)
-        self.bodies = sample_bodies(model, self.config)
+        self.bodies = sample_bodies(model, self.config, vessels)
         self.body_particle_count = len(self.bodies.local)
         self.body_local = wp.array(self.bodies.local, dtype=wp.vec3)
         self.body_volume = wp.array(self.bodies.volume, dtype=float)
@@ -161,7 +165,9 @@ class SolverSPH(SolverBase):
         self.domain = domain_of(place, containers)
         if self.openings:
             self.domain = self.domain[0], self.domain[1] + ROOM * self.config.support
-        self.faces = FixedFaces(model, self.world_count, containers, self.config.support)
+        own = frozenset().union(*(vessel.shapes for vessel in vessels))
+        self.faces = FixedFaces(model, self.world_count, containers, self.config.support, own)
+        self.skins = Skins(model, self.world_count, self.config.spacing, own)
         self._bring_into_order()
 
     def _bring_into_order(self) -> None:
@@ -232,6 +238,7 @@ class SolverSPH(SolverBase):
         self.search.stale = True
         self.push.forget()
         self.full.zero_()
+        self.skins.forget()
 
     def restart(self) -> None:
         """Begin anew, with a state from before the first step: what waits for taps waits again."""
@@ -303,8 +310,8 @@ class SolverSPH(SolverBase):
             self._move_bodies(state_in)
             self.search.update(state_in.particle_q, self.body_position, lambda: self._gather(state_in))
             self._update_pressure(state_out, dt)
-            self._move_fluid(state_out, dt)
-            self._return_wrenches(state_in, state_out)
+            self._move_fluid(state_in, state_out, dt)
+            self._return_wrenches(state_in, state_out, dt)
 
     def _move_bodies(self, state: newton.State) -> None:
         if self.body_particle_count:
@@ -385,7 +392,7 @@ class SolverSPH(SolverBase):
                 outputs=[solid.motion, solid.facing],
             )
 
-    def _move_fluid(self, state_out: newton.State, dt: float) -> None:
+    def _move_fluid(self, state_in: newton.State, state_out: newton.State, dt: float) -> None:
         """Momentum: the fluid moves, and its push on the bodies is kept."""
         search = self.search
         fluid, walls, bodies = (kind.species for kind in (search.fluid, search.walls, search.bodies))
@@ -397,11 +404,13 @@ class SolverSPH(SolverBase):
             inputs=[*method, self.model.gravity, fluid, walls, bodies, self.model.particle_mass, dt],
             outputs=[state_out.particle_q, state_out.particle_qd, self._on_walls],
         )
+        worlds, solid = search.fluid.world, self.config.dimensions == 3
         if self.openings:
-            self.openings.take_in(search.fluid.world, state_out.particle_q)
-        if len(self._on_walls) and self.faces.count and self.config.dimensions == 3:
-            at = state_out.particle_q, state_out.particle_qd
-            self.faces.keep_out(search.fluid.world, dt, *at, self._on_walls)
+            self.openings.take_in(worlds, state_out.particle_q)
+        if len(self._on_walls) and self.faces.count and solid:
+            self.faces.keep_out(worlds, dt, state_out.particle_q, state_out.particle_qd, self._on_walls)
+        if self.skins.count and solid:
+            self.skins.keep_out(search.fluid, dt, state_out, state_in, self._on_walls)
         if self.openings:
             self.openings.lead(search.fluid, state_out, self._on_walls, dt)
         if len(self._on_walls):
@@ -409,7 +418,7 @@ class SolverSPH(SolverBase):
             if self.body_particle_count:
                 self._wall_impulse.add(self.push.on_walls, dt, self.push.world_first)
 
-    def _return_wrenches(self, state_in: newton.State, state_out: newton.State) -> None:
+    def _return_wrenches(self, state_in: newton.State, state_out: newton.State, dt: float) -> None:
         if not self.body_particle_count:
             return
         wp.launch(
@@ -431,3 +440,4 @@ class SolverSPH(SolverBase):
             inputs=[self.lane_wrench],
             outputs=[self.body_wrench, state_out.body_f],
         )
+        self.skins.give_back(dt, self.body_wrench, state_out.body_f)

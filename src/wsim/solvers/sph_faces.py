@@ -31,13 +31,22 @@ class FixedFaces:
         world_count: W.
         containers: Tanks of all worlds.
         reach: How deep in a mesh a particle is still put back [m]; more than it goes in a step.
+        spared: Labels of shapes that have skins instead (`wsim.solvers.sph_skins`).
     """
 
-    def __init__(self, model: Any, world_count: int, containers: Sequence[OpenBox], reach: float) -> None:
+    def __init__(
+        self,
+        model: Any,
+        world_count: int,
+        containers: Sequence[OpenBox],
+        reach: float,
+        spared: frozenset[str] = frozenset(),
+    ) -> None:
         self._model, self._world_count = model, world_count
         kinds, scales = model.shape_type.numpy(), model.shape_scale.numpy().astype(float)
         self._poses = model.shape_transform.numpy().astype(float)
         fixed = ((model.shape_flags.numpy() & ShapeFlags.COLLIDE_SHAPES) != 0) & (model.shape_body.numpy() < 0)
+        fixed &= np.array([str(label) not in spared for label in model.shape_label], dtype=bool)
         self._faces: Any = Faces()
         self._faces.reach = reach
         self.count = (
@@ -118,6 +127,8 @@ class FixedFaces:
 
     def keep_out(self, worlds: wp.array, dt: float, position: wp.array, velocity: wp.array, on_walls: wp.array) -> None:
         """Put back what came through a face in the step that ends; arguments as the kernel's."""
+        if not self.count:
+            return
         wp.launch(
             keep_out,
             dim=len(position),

@@ -18,10 +18,12 @@ from wsim.solvers.fixed_shapes import FixedShape, fixed_shape
 from wsim.solvers.shapes import OpenBox, sample_container
 from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.tiles import Tiles, keys_of
+from wsim.solvers.vessels import Vessel
 
 Array = np.ndarray
 TILE = 8  # spacings that a tile is long
 FEW = 3  # particles that lie together, which have no weight to speak of
+CLEAR = 0.9  # spacings between what is a vessel's wall and what is not
 CORNERS = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
 
 
@@ -29,37 +31,52 @@ class _Standing:
     """What stands still in one world.
 
     Attributes:
-        shapes: Those that are not a tank's walls, planes last.
+        shapes: Those that are not a tank's or a vessel's walls, planes last.
         hollows: Of its tanks.
         home: Tiles whose shapes have their particles, as keys.
-        laid: Those particles, and the walls of tanks.
+        laid: Those particles, and the walls of vessels and tanks.
     """
 
-    def __init__(self, shapes: list[FixedShape], planes: list[FixedShape], hollows: list[OpenBox]) -> None:
+    def __init__(
+        self, shapes: list[FixedShape], planes: list[FixedShape], hollows: list[OpenBox], vessels: list[Samples]
+    ) -> None:
         self.shapes, self.hollows = [*shapes, *planes], hollows
         self.finite = len(shapes)
         self.home: Array = np.zeros(0, dtype=np.int64)
-        self.laid: list[Samples] = []
+        self.laid: list[Samples] = list(vessels)
+        self._vessels = cKDTree(np.concatenate([walls.position for walls in vessels])) if vessels else None
+
+    def beside_vessels(self, samples: Samples, clear: float) -> Samples:
+        """Samples but for those within `clear` [m] of a vessel's walls: through thin ones they would count twice."""
+        if self._vessels is None:
+            return samples
+        keep = self._vessels.query(samples.position)[0] > clear
+        return Samples(samples.position[keep], samples.volume[keep])
 
 
 class FixedSolids:
-    """The particles of fixed shapes, in the tiles of space that are home to the fluid, and of tanks' walls.
+    """The particles of fixed shapes, in the tiles of space that are home to the fluid, and of tanks' and vessels'
+    walls.
 
     What is inside of a tank's hollow is home from the start, and with it all that stands there. So is where a free
     fluid is, and what is below it. Where it goes from there, `ahead` follows, tile by tile.
 
-    Where shapes overlap, particles are of the first alone: of a tank's walls, then of the first shape, of planes last.
+    Where shapes overlap, particles are of the first alone: of a vessel's walls, a tank's, then of the first shape, of
+    planes last.
 
     Args:
         model: The `newton.Model`.
         config: For the spacing, the kernel's support, dimensions and periodic axes.
         containers: Tanks of all worlds.
+        vessels: What else holds fluid in them; those that are bodies are left to `sample_bodies`.
 
     Raises:
-        ValueError: If a container is too narrow for the spacing.
+        ValueError: If a container is too narrow for the spacing, or a vessel has no hollow.
     """
 
-    def __init__(self, model: newton.Model, config: ConfigSPH, containers: Sequence[OpenBox]) -> None:
+    def __init__(
+        self, model: newton.Model, config: ConfigSPH, containers: Sequence[OpenBox], vessels: Sequence[Vessel] = ()
+    ) -> None:
         self._config = config
         self.world_count = max(1, model.world_count)
         flat = np.array([False, config.dimensions == 2, False])
@@ -67,13 +84,19 @@ class FixedSolids:
         self._tiles = Tiles(TILE * config.spacing, ~(flat | periodic))
         # A particle sees as far as the support, and a list as far as its skin beyond.
         self._guard = (1.0 + config.skin) * config.support
-        walls = [[box for box in containers if box.world in (-1, w)] for w in range(self.world_count)]
+        walls = [(vessel.world, vessel.walls(config.spacing)) for vessel in vessels if vessel.body is None]
         self._worlds = [
-            _Standing(shapes, planes, boxes)
-            for (shapes, planes), boxes in zip(_shapes_of(model, config, containers), walls, strict=True)
+            _Standing(
+                *shapes,
+                [box for box in containers if box.world in (-1, w)],
+                [samples for of, samples in walls if of in (-1, w)],
+            )
+            for w, shapes in enumerate(_shapes_of(model, config, [*containers, *vessels]))
         ]
+        clear = CLEAR * config.spacing
         for world in self._worlds:
-            world.laid += [Samples(*sample_container(box, config)) for box in world.hollows]
+            tanks = [Samples(*sample_container(box, config)) for box in world.hollows]
+            world.laid += [world.beside_vessels(samples, clear) for samples in tanks]
             world.laid += [self._lay(world, *self._around(box), world.finite) for box in world.hollows]
         self._find = _Finder(model, self._worlds, self._tiles, self._guard)
 
@@ -143,7 +166,8 @@ class FixedSolids:
             found.append(Samples(at[keep], samples.volume[keep]))
         if not found:
             return Samples(np.zeros((0, 3)), np.zeros(0))
-        return Samples(np.concatenate([f.position for f in found]), np.concatenate([f.volume for f in found]))
+        laid = Samples(np.concatenate([f.position for f in found]), np.concatenate([f.volume for f in found]))
+        return world.beside_vessels(laid, CLEAR * self._config.spacing)
 
     def _around(self, box: OpenBox) -> tuple[Array, Array]:
         """Corners of what is upright around a hollow, and of what water at its rim sees [m]."""
@@ -237,10 +261,10 @@ class _Finder:
 
 
 def _shapes_of(
-    model: newton.Model, config: ConfigSPH, containers: Sequence[OpenBox]
+    model: newton.Model, config: ConfigSPH, holders: Sequence[OpenBox | Vessel]
 ) -> list[tuple[list[FixedShape], list[FixedShape]]]:
-    """Of each world the shapes that stand still, which are no tank's walls, and the planes."""
-    walls = frozenset().union(*(box.shapes for box in containers)) if containers else frozenset()
+    """Of each world the shapes that stand still, which are no walls of what holds fluid, and the planes."""
+    walls = frozenset().union(*(holder.shapes for holder in holders))
     kinds, poses, scales = model.shape_type.numpy(), model.shape_transform.numpy(), model.shape_scale.numpy()
     bodies, flags, worlds = model.shape_body.numpy(), model.shape_flags.numpy(), model.shape_world.numpy()
     found: list[tuple[list[FixedShape], list[FixedShape]]] = [([], []) for _ in range(max(1, model.world_count))]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
@@ -109,7 +108,7 @@ def _by_control(members: Sequence[Member]) -> list[list[Member]]:
 
 def bytes_of_particles(world: World) -> float:
     """What the places, velocities and densities of a world's fluids take through all of its frames."""
-    count = sum(math.prod(fluid.size) / fluid.spacing**3 for fluid in world.fluids)
+    count = sum(fluid.amount / fluid.spacing**3 for fluid in world.fluids)
     return count * (world.duration * world.frame_rate + 1.0) * BYTES_OF_A_PARTICLE
 
 

@@ -59,7 +59,7 @@ def choose(
         cores: Of the CPU, each of which takes one candidate after another.
         time_step: Upper bound of the step [s].
     """
-    particles = 2.0 * sum(math.prod(fluid.size) / fluid.spacing**3 for fluid in world.fluids)
+    particles = 2.0 * sum(fluid.amount / fluid.spacing**3 for fluid in world.fluids)
     fives, steps = max(1.0, len(world.bodies) / FIVE), _steps(world, time_step)
     one = ALONE + steps * (particles / PARTICLE_STEPS + BODY_STEP * fives)
     on_cpu = math.ceil(count / cores) * one

@@ -169,7 +169,7 @@ def _contents(world: World) -> list[str]:
         for item in world.statics
     ]
     for fluid in world.fluids:
-        cells = round(fluid.size[0] * fluid.size[1] * fluid.size[2] / fluid.spacing**3)
+        cells = round(fluid.amount / fluid.spacing**3)
         row = [name_of(fluid.prim), f"fluid, about {cells} particles", number(cells * fluid.spacing**3 * fluid.density)]
         rows.append([*row, numbers(fluid.size, " x "), numbers(fluid.center)])
     lines = table(("object", "what", "mass [kg]", "size [m]", "place [m]"), rows) if rows else ["nothing is in it"]

@@ -47,7 +47,7 @@ def fluid_impulse(recording: Recording) -> Floats | None:
 
 
 def particle_mass(fluid: Fluid) -> float:
-    """Of each of a fluid's particles, which stand for a cell of the lattice that fills its box [kg]."""
+    """Of each of a fluid's particles, which stand for a cell of the lattice that fills it [kg]."""
     return fluid.density * fluid.cell
 
 

@@ -36,7 +36,7 @@ class CheckFluidMass(Check):
     def _mass(self, evidence: Evidence, fluid: Fluid) -> Finding:
         track = evidence.track(fluid)
         count = int(track.count[0]) if len(track.time) else 0
-        volume = math.prod(fluid.size)
+        volume = fluid.amount
         inside = sum(self._drowned(evidence, fluid, i) for i in range(len(evidence.world.bodies)))
         value = fluid.density * fluid.cell * count
         expected = fluid.density * max(volume - inside, 0.0)

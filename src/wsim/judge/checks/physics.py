@@ -285,7 +285,7 @@ class CheckFluidContained(Check):
 
 def contained(check: Check, evidence: Evidence, fluid: Fluid, share: float) -> Finding:
     """A finding about the largest share of a fluid's particles outside its container at any time."""
-    if evidence.container_of(fluid) is None:
+    if evidence.container_of(fluid) is None and fluid.volume is None:
         raise MissingError(f"{fluid.prim} has no container in the world: {fluid.container}")
     outside = evidence.outside(fluid)
     times = evidence.track(fluid).time

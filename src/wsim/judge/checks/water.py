@@ -80,7 +80,7 @@ class CheckLevelSurface(Check):
                 continue
             late = track.time >= evidence.window_start
             points = local(container, track.position[late].mean(axis=0).astype(np.float64))
-            level = fluid.size[0] * fluid.size[1] * fluid.size[2] / (container.inner_size[0] * container.inner_size[1])
+            level = fluid.amount / (container.inner_size[0] * container.inner_size[1])
             speed = float(np.sqrt((track.velocity[late].astype(np.float64) ** 2).sum(axis=2).mean()))
             swing = speed * math.sqrt(level / max(evidence.gravity, 1e-9))  # as high as it still sloshes
             found.append(self._tilt(evidence, fluid, points, swing / min(container.inner_size[:2])))

@@ -16,6 +16,7 @@ from wsim.judge.evidence.containment import Containment, local
 from wsim.judge.evidence.final_window import final_window
 from wsim.judge.evidence.placed import as_parts, placed_shapes, placed_together
 from wsim.judge.evidence.stacked import Stacked, stacked
+from wsim.judge.evidence.vessels import strayed
 from wsim.scene.world import Shape
 
 if TYPE_CHECKING:
@@ -64,6 +65,7 @@ class Recorded:
         self.body_qd: Floats = np.asarray(recording.body_qd, dtype=np.float64)
         self._solids: dict[int, Solid[Shape]] = {}
         self._containments: dict[tuple[str, str], Containment] = {}
+        self._strayed: dict[str, Floats] = {}
         self._ends: dict[int, tuple[Floats, Floats]] = {}
         self.kept: dict[object, object] = {}  # what several checks work out alike, by its class, and of what
         self.part: Part | None = None  # of many copies of this world, where it is one of them
@@ -228,7 +230,7 @@ class Recorded:
 
     # ---- fluid
     def container_of(self, fluid: Fluid) -> Container | None:
-        """The container that a fluid fills."""
+        """The tank that a fluid fills."""
         return self.container(fluid.container) if fluid.container is not None else None
 
     local = staticmethod(local)
@@ -247,9 +249,27 @@ class Recorded:
         Above the open rim a particle is still inside as long as it is over the container.
         """
         container = self.container_of(fluid)
-        if container is None:
+        if container is not None:
+            return self.containment(container, fluid).outside
+        if fluid.volume is None:
             return np.zeros(len(self.track(fluid).time))
-        return self.containment(container, fluid).outside
+        if fluid.prim not in self._strayed:
+            self._strayed[fluid.prim] = self._outside_of_vessel(fluid)
+        return self._strayed[fluid.prim]
+
+    def _outside_of_vessel(self, fluid: Fluid) -> Floats:
+        """Of a fluid in a vessel that is no tank, the share that is beside it or under it; MissingError."""
+        track, prim = self.track(fluid), fluid.container or ""
+        still = self.static(prim)
+        if still is not None:
+            shapes, pose = still.shapes, np.tile([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], (len(track.time), 1))
+        else:
+            i = self.index(prim)
+            frames = np.abs(self.time[:, None] - track.time).argmin(axis=0)
+            shapes, pose = self.world.bodies[i].shapes, self.body_q[frames, i].astype(np.float64)
+        poured = bool(self.world.taps)
+        found = strayed(shapes, pose, track.position, fluid.spacing, self.up, poured).sum(axis=1)
+        return np.asarray(found / np.maximum(track.count, 1))
 
 
 class Whole(Recorded):

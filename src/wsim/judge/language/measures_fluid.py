@@ -280,7 +280,7 @@ def _fill(asked: Fills, finding: Finding, evidence: Evidence) -> RepairTarget:
     fluid, container = evidence.fluid(finding.prim or ""), evidence.container(evidence.prim(asked.ref))
     if container is None:
         return RepairTarget(kind="missing object", direction="add", why="there is nothing to fill")
-    room, volume = math.prod(container.inner_size), math.prod(fluid.size)
+    room, volume = math.prod(container.inner_size), fluid.amount
     if volume > room:
         top = volume / math.prod(container.inner_size[:2])
         return RepairTarget(

@@ -252,7 +252,7 @@ def _mass(asked: Conserves, signals: Signals) -> Measure:
     track = evidence.track(fluid)
     if track.present is not None:
         return _passed_mass(asked, signals, evidence, fluid)
-    total = math.prod(fluid.size) * fluid.density
+    total = fluid.amount * fluid.density
     finite = np.isfinite(track.position).all(axis=2)
     there = finite.mean(axis=1) if fluid.container is None else 1.0 - evidence.outside(fluid)
     there = np.minimum(there, finite.mean(axis=1))

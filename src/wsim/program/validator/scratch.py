@@ -57,8 +57,8 @@ CORDS = ("spring", "rope", "cable")
 OPENINGS = ("tap", "drain")
 OBJECTS = (*BODIES, "robot", "vehicle", "ground", "track", "height_field", "terrain", "scatter", "tank", "fluid")
 # Arguments whose rightness hangs on what else is in the scene.
-_TIED = ("name", "parent", "child", "fills", "container", "material", "level", "spacing", "file", "low", "high",
-         "a", "b", "anchor_a", "anchor_b", "rest_length", "length", "around", "through", "loose", "links",
+_TIED = ("name", "parent", "child", "fills", "container", "material", "level", "volume", "spacing", "file", "low",
+         "high", "a", "b", "anchor_a", "anchor_b", "rest_length", "length", "around", "through", "loose", "links",
          "body", "joints", "times", "positions", "rotations_deg", "joint_a", "joint_b", "points",
          "layers", "areas", "on", "count", "clear", "follows", "turns",
          "what", "quantity", "values", "linear", "point", "after", "start", "stop")  # fmt: skip
@@ -218,8 +218,8 @@ class World:
         """What the scene says to a fluid with these of its arguments, whatever their values."""
         scene = Scene()
         good: dict[str, Any] = {
-            "fills": scene.tank("tank", inner_size=(1.0, 1.0, 1.0)), "level": 0.5, "size": (0.5, 0.5, 0.5),
-            "position": (0.0, 0.0, 0.5), "container": None,
+            "fills": scene.tank("tank", inner_size=(1.0, 1.0, 1.0)), "level": 0.5, "volume": 0.5,
+            "size": (0.5, 0.5, 0.5), "position": (0.0, 0.0, 0.5), "container": None,
         }  # fmt: skip
         none = [f for f in good if f in arguments and _is_none(arguments[f])]
         given = {f: value for f, value in good.items() if f in arguments and f not in none}

@@ -1,0 +1,61 @@
+"""Where a fluid's particles are, seen from a vessel of any shape: by the convex hull of what it is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from wsim.geometry.rotations import conjugate, rotate
+from wsim.geometry.shapes import Solid
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.scene.world import Shape
+
+    Floats = NDArray[np.float64]
+    Bools = NDArray[np.bool_]
+
+LID = 0.5  # of the upward axis that a face's normal has: the hull closes the mouth with it
+
+
+def strayed(
+    shapes: Sequence[Shape],
+    pose: Floats,
+    position: NDArray[np.float32],
+    slack: float,
+    up: Floats,
+    poured: bool = False,
+) -> Bools:
+    """Which particles are beside or under a vessel, as of a tank: over its rim is not (T, N).
+
+    Args:
+        shapes: Of the vessel, in its frame.
+        pose: Of that frame at each of the particles' frames (T, 7) [m, xyzw].
+        position: Of the particles (T, N, 3) [m]; NaN where one is not in the world, and has not strayed.
+        slack: How far beyond the hull they may be [m].
+        up: Against gravity, in the world (3,).
+        poured: Whether one may come from a tap anywhere over the vessel: it has strayed when it is below that.
+    """
+    upward = rotate(conjugate(pose[0, 3:]), up)
+    walls, top = walls_of(shapes, upward)
+    found = np.empty(position.shape[:2], dtype=bool)
+    for t, points in enumerate(position):  # one frame at a time: a recording may be larger than a cache
+        places = rotate(conjugate(pose[t, 3:]), points - pose[t, :3])
+        found[t] = (places @ walls[:, :3].T > walls[:, 3] + slack).any(axis=1)
+        if poured:
+            found[t] &= places @ upward <= top + slack
+    return found
+
+
+def walls_of(shapes: Sequence[Shape], up: Floats) -> tuple[Floats, float]:
+    """The hull's faces, but for those that close the mouth, (K, 4): behind one is where n . x <= d; and its top [m]."""
+    surfaces = Solid([shape for shape in shapes if shape.collides]).surfaces
+    vertices = np.vstack([surface.vertices for surface in surfaces])
+    equations = ConvexHull(vertices).equations
+    faces = np.hstack([equations[:, :3], -equations[:, 3:]])
+    walls: Floats = faces[faces[:, :3] @ up < LID]
+    return walls, float((vertices @ up).max())

@@ -1,0 +1,99 @@
+"""Vessels of any shape that hold a fluid: particles behind the inside of their walls, however thin these are.
+
+As with a tank (`OpenBox`), a thin wall's own volume would leave the kernel of a particle beside it half empty.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import trimesh
+from scipy.spatial import cKDTree
+
+from wsim.geometry.filled import Samples
+from wsim.geometry.hollows import Hollow, is_closed
+from wsim.geometry.rotations import conjugate, rotate
+from wsim.geometry.surfaces import Surface
+from wsim.solvers.layers import RELAXED, spread_layers
+
+Array = np.ndarray
+CELLS = 3  # of the grid that its hollow is found on, along a spacing at least
+PIECES = 4  # of a spacing: what its inside is cut into
+FRONT = (0.6, 1.2)  # cells in front of an inner face that the hollow begins
+BESIDE = 0.6  # of a piece's edge: how far off its middle it still goes on
+NOWHERE = -1e9  # [m]: as deep as what is no wall
+
+
+@dataclass(frozen=True)
+class Vessel:
+    """A hollow object that fluid is in. Where it stands still its frame is the world's, else its body's."""
+
+    surfaces: tuple[Surface, ...]
+    """Of its parts; one that is not closed is a sheet."""
+    upright: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
+    """Rotation, xyzw, that turns it so that its hollow opens upward."""
+    shapes: frozenset[str] = frozenset()
+    """Labels of the model's shapes that are its walls; they are not sampled again."""
+    body: str | None = None
+    """Label of the body that it is; None: it stands still."""
+    world: int = -1
+    """The world that it stands in; -1 is every world."""
+
+    def walls(self, spacing: float) -> Samples:
+        """Layers of particles behind its inside up to the rim, as deep as a kernel reaches, in its frame.
+
+        Raises:
+            ValueError: If it has no hollow.
+        """
+        turn = np.array(self.upright, dtype=np.float64)
+        surfaces = [surface.turned(turn) for surface in self.surfaces]
+        hollow = Hollow(surfaces, spacing / CELLS)
+        behind = _Behind(surfaces, hollow, spacing)
+        reach = (RELAXED + 1) * spacing
+        low, high = behind.middles.min(axis=0) - reach, behind.middles.max(axis=0) + reach
+        ticks = [np.arange(a, b, spacing) + 0.5 * spacing for a, b in zip(low, high, strict=True)]
+        cells = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
+        depth = behind(cells)
+        near = (depth > -2.0 * spacing) & (depth < (RELAXED + 1) * spacing)
+        found = spread_layers(cells[near], depth[near], np.full(3, spacing), spacing, behind)
+        return Samples(rotate(conjugate(turn), found.position), found.volume)
+
+
+class _Behind:
+    """How deep points (n, 3) are behind the inside of a vessel, (n,) [m]; negative in front, and over its rim."""
+
+    def __init__(self, surfaces: list[Surface], hollow: Hollow, spacing: float) -> None:
+        self._rim = np.inf if hollow.sealed else hollow.rim
+        self._beside = BESIDE * spacing / PIECES
+        pieces = [_inside_of(surface, hollow, spacing / PIECES) for surface in surfaces]
+        self.middles = np.concatenate([middles for middles, _ in pieces])
+        self._normals = np.concatenate([normals for _, normals in pieces])
+        self._tree = cKDTree(self.middles)
+
+    def __call__(self, points: Array) -> Array:
+        away, nearest = self._tree.query(points, workers=-1)
+        straight = -((points - self.middles[nearest]) * self._normals[nearest]).sum(axis=1)
+        aside = np.sqrt(np.maximum(away**2 - straight**2, 0.0))
+        deep = np.sign(straight) * np.hypot(straight, np.maximum(aside - self._beside, 0.0))
+        return np.where(points[:, 2] > self._rim, NOWHERE, deep)
+
+
+def _inside_of(surface: Surface, hollow: Hollow, edge: float) -> tuple[Array, Array]:
+    """Middles (n, 3) [m] and normals (n, 3), towards the hollow, of a surface's pieces that face it."""
+    points, faces = trimesh.remesh.subdivide_to_size(surface.vertices, surface.triangles, edge, max_iter=30)
+    corners = points[faces]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(normal, axis=1)
+    flat = length > 1e-9 * edge**2
+    middles, normals = corners[flat].mean(axis=1), normal[flat] / length[flat, None]
+    if surface.volume < 0.0:
+        normals = -normals
+    front, back = (
+        np.any([hollow.holds(middles + side * far * hollow.edge * normals) for far in FRONT], axis=0)
+        for side in (1.0, -1.0)
+    )
+    if not is_closed(surface):
+        normals = np.where((back & ~front)[:, None], -normals, normals)
+        front = front != back
+    return middles[front], normals[front]
