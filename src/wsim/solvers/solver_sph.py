@@ -30,8 +30,6 @@ from wsim.solvers.sph_solids import FixedSolids
 from wsim.solvers.sph_wall_impulse import LEAST_LANES, WallImpulse
 from wsim.solvers.vessels import Vessel
 
-VENTED = 0.5  # times c / h: pressure leaves by a void in the time in which sound crosses a kernel's support
-
 
 class SolverSPH(SolverBase):
     """Weakly compressible SPH (Monaghan 1994) with density diffusion, walls and two-way coupled bodies.
@@ -123,7 +121,6 @@ class SolverSPH(SolverBase):
         method.speed_of_sound, method.diffusion = c.speed_of_sound, c.density_diffusion
         method.artificial_viscosity, method.laminar_factor = c.artificial_viscosity, c.laminar_factor
         method.background_pressure = c.background_pressure
-        method.vented = VENTED * c.speed_of_sound / h if self.openings else 0.0
         return method
 
     def _read_worlds(self) -> None:

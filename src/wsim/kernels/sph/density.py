@@ -17,6 +17,10 @@ HELD_AT_SURFACE = wp.constant(4.0)
 # Of what is around a particle the share that is filled: at a level surface 0.6, one layer further down 0.9.
 OPEN = wp.constant(0.7)
 CLOSED = wp.constant(0.9)
+# Beside a void is the air, whose pressure is 0: what is above a share of that leaves in the time in which sound crosses
+# the kernel's support. All of it would leave a surface at rest without its own weight.
+VENT_ABOVE = wp.constant(0.25)
+VENTED = wp.constant(0.5)  # [c / h]
 # Of what is around a particle in a gap the share of fluid from which on it needs none of what is handed on there.
 ALONE = wp.constant(0.25)
 # One body particle half a smoothing length inside the support, or several further out, and walls give nothing back.
@@ -34,7 +38,6 @@ class Method:
     artificial_viscosity: float  # alpha
     laminar_factor: float  # about 2 (d + 2) in d dimensions
     background_pressure: float  # [Pa]
-    vented: float  # at which pressure leaves what has a void beside it [1/s]; 0: only by its flow
 
 
 @wp.func
@@ -87,9 +90,9 @@ def make_continuity(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         its pressure. It spans fluid alone, and so neither makes nor destroys volume in sum, but for single particles in
         a gap of bodies, which take on the pressure there (`push.make_push`).
 
-        Where drops come from taps and meet again, each has the density of water, and continuity has them press on each
-        other as soon as they are within reach, with voids between them: the heap would stand up to twice as high as its
-        volume. Beside a void is the air, whose pressure is 0; `vented` is the rate at which it gets in.
+        Water that meets again, drops of a tap or a splash, has the density of water with voids between, and continuity
+        has it press on the rest as soon as that is within reach: the heap would stand up to twice as high as its
+        volume, and what splashes swell. So what is beside a void is vented.
 
         `full` is how far each is from any void, in original order, for the next step's `boundary.compress`.
         """
@@ -123,11 +126,12 @@ def make_continuity(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         full[fluid.order[s]] = enclosed
         divergence += enclosed * given_back / p[3]
         c2 = method.speed_of_sound * method.speed_of_sound
+        vent = VENTED * method.speed_of_sound / method.h
         rate = (c2 * rho0 + m[3]) * divergence + 2.0 * method.diffusion * method.h * method.speed_of_sound * smoothing
-        least = enclosed * (LOWEST_DENSITY - 1.0) * rho0 * c2 - HELD_AT_SURFACE * wp.length(weight) * method.h
-        now = wp.max(m[3] + dt * rate, least)
-        if now > 0.0:
-            now *= wp.exp(-dt * method.vented * (1.0 - enclosed))
+        held = HELD_AT_SURFACE * wp.length(weight) * method.h
+        now = wp.max(m[3] + dt * rate, enclosed * (LOWEST_DENSITY - 1.0) * rho0 * c2 - held)
+        if now > VENT_ABOVE * held:
+            now = VENT_ABOVE * held + (now - VENT_ABOVE * held) * wp.exp(-dt * vent * (1.0 - enclosed))
         pressure[s] = now
 
     return continuity
