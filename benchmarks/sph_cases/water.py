@@ -84,11 +84,13 @@ def simulate(
 
     graph = None
     for sample in range(samples):
+        if solver.follow(state, every * dt):
+            graph = None  # it was of fewer walls
         if graph is not None:
             wp.capture_launch(graph)
         else:
             interval()
-        if sample == 0 and solver.model.device.is_cuda and samples > 1:
+        if graph is None and solver.model.device.is_cuda and sample < samples - 1:
             with wp.ScopedCapture(solver.model.device) as capture:
                 interval()
             graph = capture.graph

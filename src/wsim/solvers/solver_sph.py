@@ -42,6 +42,8 @@ class SolverSPH(SolverBase):
         sph.step(state, state, control, None, dt)
         rigid.step(state, state, control, contacts, dt)
 
+    Where fluid may get to solids far from its start, call `follow(state, seconds)` between steps, once in a while.
+
     Order of a step: density and pressure at the present positions and velocities, forces, then velocity, then position
     with the new velocity. Call `register_custom_attributes` on the builder first; the state then has `sph.pressure`.
 
