@@ -53,7 +53,11 @@ SPOILT: list[tuple[Callable[[Usd.Stage], None], str]] = [
     (_attribute("/World/ball", "physics:density", math.nan), "/World/ball.physics:density: nan must be finite"),
     (_attribute("/World/water", "wsim:density", 0.0), "/World/water.wsim:density: 0 must be > 0"),
     (_attribute("/World/water", "wsim:spacing", 1e-4), "/World/water.wsim:spacing: 0.0001 m gives 1.8e+11 particles"),
-    (_attribute("/World/water", "wsim:size", Gf.Vec3f(1, -1, 1)), "/World/water.wsim:size: -1 must be > 0 m"),
+    (_attribute("/World/water", "wsim:size", Gf.Vec3f(1, -1, 1)), "/World/water.wsim:size: -1 must be >= 0 m"),
+    (
+        _attribute("/World/water", "wsim:size", Gf.Vec3f(1, 0, 1)),
+        "must be > 0 along x and y; its height alone may be 0",
+    ),
     (_attribute("/World/tank", "wsim:innerSize", Gf.Vec3f(1, 1, 0)), "/World/tank.wsim:innerSize: 0 must be > 0 m"),
     (_attribute("/World/PhysicsScene", "wsim:duration", 1e9), "wsim:duration: 1e+09 must be <= 3600 s"),
     (_attribute("/World/PhysicsScene", "wsim:timeStep", 1e-12), "wsim:timeStep: 1e-12 must be >= 1e-05 s, or 0"),

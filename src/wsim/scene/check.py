@@ -354,6 +354,8 @@ def _fluid(prim: Usd.Prim) -> Iterator[str]:
     size, spacing = prim.GetAttribute("wsim:size").Get(), prim.GetAttribute("wsim:spacing").Get()
     if size is None or spacing is None:
         yield f"{prim.GetPath()}: a fluid needs wsim:size and wsim:spacing"
+    elif min(size[0], size[1]) == 0.0:
+        yield f"{prim.GetPath()}.wsim:size: {tuple(size)} m must be > 0 along x and y; its height alone may be 0"
     elif not problems:
         count = size[0] * size[1] * size[2] / spacing**3
         if count > MAX_COUNT:
