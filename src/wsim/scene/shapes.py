@@ -184,7 +184,9 @@ class Shapes(Bodies):
         color: Sequence[float] | None = None,
         rolling_friction: float | None = None,
     ) -> Handle:
-        """Make a cylinder of `radius` and `height` [m] along its own `axis` X, Y or Z. For the rest see `Shapes`."""
+        """Make a cylinder of `radius` and `height` [m] along its own `axis` X, Y or Z: a can, a pole, a solid pipe.
+
+        For the rest see `Shapes`."""
         call = Call("cylinder", name)
         geometry = self._round(call, UsdGeom.Cylinder, radius, height, axis)
         options = BodyOptions(
