@@ -13,6 +13,7 @@ from wsim.geometry.filled import Samples, capsule_layers, cylinder_layers, latti
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.solvers.inside import depth_in, solid_of
 from wsim.solvers.layers import mesh_layers, mesh_part
+from wsim.solvers.sampling import layers_within
 from wsim.solvers.sph_config import ConfigSPH
 
 Array = np.ndarray
@@ -172,7 +173,8 @@ def fixed_shape(kind: int, pose: Array, scale: Array, source: Any, config: Confi
     Raises:
         ValueError: If a shape other than a box or a plane is met in a plane.
     """
-    spacing, shell, flat = config.spacing, config.support, config.dimensions == 2
+    spacing, flat = config.spacing, config.dimensions == 2
+    shell = layers_within(config.support, spacing) * spacing
     if kind == GeoType.PLANE:
         return _fixed_plane(pose, scale, config)
     if kind == GeoType.BOX:
@@ -188,13 +190,13 @@ def fixed_shape(kind: int, pose: Array, scale: Array, source: Any, config: Confi
 def _fixed_plane(pose: Array, scale: Array, config: ConfigSPH) -> FixedShape:
     """As many layers below it as a kernel reaches; along a periodic axis as long as the period."""
     half = np.where(scale[:2] > 0.0, 0.5 * scale[:2], ENDLESS)
-    layers = max(1, round(config.support / config.spacing - 0.5))
-    lower, upper = np.array([*-half, -layers * config.spacing]), np.array([*half, 0.0])
+    shell = layers_within(config.support, config.spacing) * config.spacing
+    lower, upper = np.array([*-half, -shell]), np.array([*half, 0.0])
     for axis, ends in enumerate(config.periodic[:2]):
         if ends is not None:
             lower[axis], upper[axis] = (end - pose[axis] for end in ends)
     flat, bottomless = config.dimensions == 2, bool((scale[:2] == 0.0).all())
-    return FixedLattice(pose, lower, upper, config.spacing, config.support, flat, bottomless)
+    return FixedLattice(pose, lower, upper, config.spacing, shell, flat, bottomless)
 
 
 def _fixed_mesh(pose: Array, vertices: Array, source: Any, convex: bool, spacing: float, shell: float) -> FixedShape:
