@@ -16,11 +16,10 @@ from wsim.geometry.rotations import rotate
 from wsim.solvers.layers import mesh_layers
 from wsim.solvers.sampling import container_walls, plane_patch
 from wsim.solvers.sph_config import ConfigSPH
-from wsim.solvers.vessels import Vessel
+from wsim.solvers.vessels import Vessel, own_label
 
 Array = np.ndarray
 Piece = tuple[Array, Array]  # positions (n, 3) [m] and volumes (n,) [m^3]
-Pieces = dict[int, list[Piece]]
 CLEAR = 0.9  # spacings between what is a vessel's wall and what is not
 
 
@@ -148,10 +147,10 @@ def sample_boundary(
         piece = _sample_container(box, config)
         for world in range(world_count) if box.world < 0 else (box.world,):
             fixed[world].append(piece)
-    behind = _add_vessels(model, config.spacing, vessels, moving)
+    behind = _vessels(model, config.spacing, vessels)
 
     for shape in range(model.shape_count):
-        if not flags[shape] & ShapeFlags.COLLIDE_SHAPES or model.shape_label[shape] in walls:
+        if not flags[shape] & ShapeFlags.COLLIDE_SHAPES or own_label(str(model.shape_label[shape])) in walls:
             continue
         homes = range(world_count) if worlds[shape] < 0 else [int(worlds[shape])]
         if kinds[shape] == GeoType.PLANE:
@@ -181,31 +180,44 @@ def sample_boundary(
             if len(here):
                 keep = near_fluid(position, here, config.support) & _in_period(position, config)
                 fixed[world].append((position[keep], found.volume[keep]))
-    for world, pieces in behind.items():
-        fixed[world] = [*_without(fixed[world], pieces, config.spacing), *pieces]
+    _put_before(model, behind, fixed, moving, config.spacing)
     return _join(fixed, moving, model.body_world.numpy() if model.body_count else np.zeros(0, int))
 
 
-def _add_vessels(model: Any, spacing: float, vessels: tuple[Vessel, ...], moving: list[list[Piece]]) -> Pieces:
-    """Walls of those that stand still, of each world; those of bodies are added to theirs."""
-    behind: Pieces = {}
-    labels, worlds = [str(label) for label in model.body_label], model.body_world.numpy()
+def _vessels(model: Any, spacing: float, vessels: tuple[Vessel, ...]) -> list[tuple[int, int, Piece]]:
+    """World, body (-1: it stands still) and walls in its frame of each."""
+    found = []
     for vessel in vessels:
-        found = vessel.walls(spacing)
-        for world in range(max(1, model.world_count)) if vessel.world < 0 else (vessel.world,):
-            if vessel.body is None:
-                behind.setdefault(world, []).append((found.position, found.volume))
-        for body, label in enumerate(labels):
-            if label == vessel.body and vessel.world in (-1, int(worlds[body])):
-                moving[body].append((found.position, found.volume))
-    return behind
+        walls = vessel.walls(spacing)
+        found += [(world, body, (walls.position, walls.volume)) for world, body in vessel.homes(model)]
+    return found
 
 
-def _without(fixed: list[Piece], behind: list[Piece], spacing: float) -> list[Piece]:
-    """Samples without those where a vessel's walls are: what it stands on would count twice through a thin floor."""
-    tree = cKDTree(np.concatenate([position for position, _ in behind]))
-    away = [tree.query(position)[0] > CLEAR * spacing for position, _ in fixed]
-    return [(position[keep], volume[keep]) for (position, volume), keep in zip(fixed, away, strict=True)]
+def _put_before(
+    model: Any,
+    vessels: list[tuple[int, int, Piece]],
+    fixed: list[list[Piece]],
+    moving: list[list[Piece]],
+    spacing: float,
+) -> None:
+    """Add vessels' walls; what of anything else is in them at the start would count twice through a thin floor."""
+    poses = model.body_q.numpy().astype(float) if model.body_count else np.zeros((0, 7))
+    worlds = model.body_world.numpy() if model.body_count else np.zeros(0, int)
+    for world, body, (position, _) in vessels:
+        tree = cKDTree(position if body < 0 else rotate(poses[body, 3:], position) + poses[body, :3])
+        fixed[world] = [_clear_of(tree, piece, None, spacing) for piece in fixed[world]]
+        for k in np.flatnonzero(np.maximum(worlds, 0) == world).tolist():
+            if k != body:
+                moving[k] = [_clear_of(tree, piece, poses[k], spacing) for piece in moving[k]]
+    for world, body, piece in vessels:
+        (fixed[world] if body < 0 else moving[body]).append(piece)
+
+
+def _clear_of(tree: cKDTree, piece: Piece, pose: Array | None, spacing: float) -> Piece:
+    position, volume = piece
+    place = position if pose is None else rotate(pose[3:], position) + pose[:3]
+    keep = tree.query(place)[0] > CLEAR * spacing
+    return position[keep], volume[keep]
 
 
 def _in_period(position: Array, config: ConfigSPH) -> Array:

@@ -144,7 +144,7 @@ class SolverSPH(SolverBase):
         self.body_volume = wp.array(solids.volume[fixed:], dtype=float)
         self.body_owner = wp.array(solids.owner[fixed:], dtype=int)
         self.body_first = wp.array(solids.body_first - fixed, dtype=int)
-        self.domain = domain_of(place, containers)
+        self.domain = domain_of(place, containers, vessels)
         self.search = ParticleSearch(
             self.config,
             self.domain,
@@ -158,7 +158,8 @@ class SolverSPH(SolverBase):
         self.programs = self.search.programs
         own = frozenset().union(*(vessel.shapes for vessel in vessels))
         self.faces = FixedFaces(model, self.world_count, containers, own)
-        self.skins = Skins(model, self.world_count, self.config.spacing, own)
+        self.skins = Skins(model, self.world_count, self.config.spacing, vessels)
+        self._held = frozenset(body for vessel in vessels for _, body in vessel.homes(model))
 
     def _allocate(self) -> None:
         bodies, walls = self.body_particle_count, self.search.walls
@@ -166,7 +167,7 @@ class SolverSPH(SolverBase):
         self.full = wp.zeros(self.fluid_count, dtype=float)
         self.body_position = wp.zeros(bodies, dtype=wp.vec3)
         self.body_velocity = wp.zeros(bodies, dtype=wp.vec3)
-        self.push = BodyPush(self.search, self.body_owner)
+        self.push = BodyPush(self.search, self.body_owner, self._held)
         self._gather_solid(walls, self.wall_position, wp.zeros(self.wall_count, dtype=wp.vec3), self.wall_volume)
         # As many lanes as each has particles of the largest body to add up, and add_body_wrench lanes.
         largest = int(np.diff(self.body_first.numpy()).max(initial=0))

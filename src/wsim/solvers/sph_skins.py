@@ -12,14 +12,13 @@ import warp as wp
 from newton import GeoType, ShapeFlags
 
 from wsim.geometry.kinds import KINDS
-from wsim.geometry.rotations import rotate
 from wsim.geometry.surfaces import Surface
 from wsim.kernels.sph.skins import add_blows, keep_out_of_skins
+from wsim.solvers.vessels import Vessel, own_label
 
 Array = np.ndarray
 ROUND = (GeoType.SPHERE, GeoType.CYLINDER, GeoType.CAPSULE)
 MESHES = (GeoType.MESH, GeoType.CONVEX_MESH)
-SOLID = (GeoType.BOX, *ROUND, *MESHES)
 NOWHERE = wp.vec3(math.nan, math.nan, math.nan)
 OVERLAP = 0.02  # spacings that the parts of a vessel reach into each other: staves that are rounded leave cracks
 STEEP = 0.3  # of a corner's normal along a face's, at least, or a needle would grow without bound
@@ -32,8 +31,6 @@ def surface_of_shape(kind: int, scale: Array, source: Any) -> Surface:
         mesh = source.compute_convex_hull() if kind == GeoType.CONVEX_MESH else source
         vertices = np.asarray(mesh.vertices, dtype=float).reshape(-1, 3) * scale
         return Surface(vertices, np.asarray(mesh.indices, dtype=np.intp).reshape(-1, 3))
-    if kind == GeoType.BOX:
-        return KINDS["box"](*(2.0 * scale).tolist()).surface()
     if kind == GeoType.SPHERE:
         return KINDS["sphere"](float(scale[0])).surface()
     name = "cylinder" if kind == GeoType.CYLINDER else "capsule"
@@ -60,26 +57,25 @@ class Skins:
         model: The `newton.Model`.
         world_count: W.
         spacing: Between particles [m].
-        vessels: Labels of shapes of vessels, which all have one; of what else stands still meshes and round shapes.
+        vessels: Which all have one, each of its own; of what else stands still all meshes and round shapes, together.
 
     Attributes:
         count: Number of skins.
     """
 
-    def __init__(self, model: Any, world_count: int, spacing: float, vessels: frozenset[str] = frozenset()) -> None:
+    def __init__(self, model: Any, world_count: int, spacing: float, vessels: Sequence[Vessel] = ()) -> None:
         self._model, self._spacing = model, spacing
         self._meshes: dict[bytes, wp.Mesh] = {}
-        bodies, kinds = model.shape_body.numpy(), model.shape_type.numpy()
-        collides = (model.shape_flags.numpy() & ShapeFlags.COLLIDE_SHAPES) != 0
-        still = (bodies < 0) & np.isin(kinds, (*ROUND, *MESHES))
-        held = np.array([str(label) in vessels for label in model.shape_label], dtype=bool) & np.isin(kinds, SOLID)
-        own = model.shape_world.numpy()
-        groups: dict[tuple[int, int], list[int]] = {}
-        for k in np.flatnonzero(collides & (still | held)).tolist():
-            for w in range(world_count) if own[k] < 0 else (int(own[k]),):
-                groups.setdefault((w, int(bodies[k])), []).append(k)
-        keys = sorted(groups)
-        made = [self._skin(groups[key]) for key in keys]
+        groups = self._still(world_count, frozenset().union(*(vessel.shapes for vessel in vessels)))
+        groups += [
+            (world, body, [thickened(each, OVERLAP * spacing) for each in vessel.surfaces] if len(vessel.surfaces) > 1
+             else list(vessel.surfaces))
+            for vessel in vessels
+            for world, body in vessel.homes(model)
+        ]  # fmt: skip
+        keys = sorted(((world, body) for world, body, _ in groups), key=lambda key: key[0])
+        groups.sort(key=lambda group: group[0])
+        made = [self._skin(surfaces) for _, _, surfaces in groups]
         first = np.concatenate([[0], np.cumsum(np.bincount([w for w, _ in keys], minlength=world_count))])
         self.count = len(keys)
         self._skins = (
@@ -95,20 +91,28 @@ class Skins:
         heaviest = float(model.particle_mass.numpy().max(initial=0.0))
         self._least = QUANTUM * heaviest * spacing  # [kg m]
 
-    def _skin(self, shapes: Sequence[int]) -> tuple[wp.Mesh, Array]:
-        """One mesh of some shapes, the same for bodies that are alike, and a ball around it."""
-        vertices, triangles, first = [], [], 0
-        kinds, scales = self._model.shape_type.numpy(), self._model.shape_scale.numpy().astype(float)
-        poses = self._model.shape_transform.numpy().astype(float)
-        for k in shapes:
-            surface = surface_of_shape(int(kinds[k]), scales[k], self._model.shape_source[k])
-            if len(shapes) > 1:
-                surface = thickened(surface, OVERLAP * self._spacing)
-            vertices.append(rotate(poses[k, 3:], surface.vertices) + poses[k, :3])
-            triangles.append(surface.triangles + first)
-            first += len(surface.vertices)
-        points = np.concatenate(vertices).astype(np.float32)
-        faces = np.concatenate(triangles).astype(np.int32)
+    def _still(self, world_count: int, spared: frozenset[str]) -> list[tuple[int, int, list[Surface]]]:
+        """World, -1, and the surfaces of what stands still in it, but for some."""
+        model = self._model
+        found: dict[int, list[Surface]] = {}
+        poses, own = model.shape_transform.numpy().astype(float), model.shape_world.numpy()
+        scales, kinds = model.shape_scale.numpy().astype(float), model.shape_type.numpy()
+        seen = (model.shape_flags.numpy() & ShapeFlags.COLLIDE_SHAPES) != 0
+        seen &= (model.shape_body.numpy() < 0) & np.isin(kinds, (*ROUND, *MESHES))
+        for k in np.flatnonzero(seen).tolist():
+            if own_label(str(model.shape_label[k])) not in spared:
+                surface = surface_of_shape(int(kinds[k]), scales[k], model.shape_source[k])
+                placed = surface.turned(poses[k, 3:], poses[k, :3])
+                for w in range(world_count) if own[k] < 0 else (int(own[k]),):
+                    found.setdefault(w, []).append(placed)
+        return [(w, -1, surfaces) for w, surfaces in found.items()]
+
+    def _skin(self, surfaces: Sequence[Surface]) -> tuple[wp.Mesh, Array]:
+        """One mesh of some surfaces, the same for bodies that are alike, and a ball around it."""
+        first = np.cumsum([0, *(len(surface.vertices) for surface in surfaces)])
+        points = np.concatenate([surface.vertices for surface in surfaces]).astype(np.float32)
+        faces = np.concatenate([surface.triangles + k for surface, k in zip(surfaces, first[:-1], strict=True)])
+        faces = faces.astype(np.int32)
         key = points.tobytes() + faces.tobytes()
         if key not in self._meshes:
             self._meshes[key] = wp.Mesh(wp.array(points, dtype=wp.vec3), wp.array(faces.reshape(-1), dtype=wp.int32))

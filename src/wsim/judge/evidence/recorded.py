@@ -266,7 +266,7 @@ class Recorded:
             i = self.index(prim)
             frames = np.abs(self.time[:, None] - track.time).argmin(axis=0)
             shapes, pose = self.world.bodies[i].shapes, self.body_q[frames, i].astype(np.float64)
-        found: Floats = strayed(shapes, pose, track.position, fluid.spacing, self.up).mean(axis=1)
+        found: Floats = strayed(shapes, pose, track.position, fluid.spacing, self.up, still is None).mean(axis=1)
         return found
 
 

@@ -22,8 +22,12 @@ if TYPE_CHECKING:
 LID = 0.5  # of the upward axis that a face's normal has: the hull closes the mouth with it
 
 
-def strayed(shapes: Sequence[Shape], pose: Floats, position: NDArray[np.float32], slack: float, up: Floats) -> Bools:
+def strayed(
+    shapes: Sequence[Shape], pose: Floats, position: NDArray[np.float32], slack: float, up: Floats, moves: bool
+) -> Bools:
     """Which particles are beside or under a vessel, as of a tank: over its rim is not (T, N).
+
+    What leaves one that moves over its rim is poured, wherever it falls to.
 
     Args:
         shapes: Of the vessel, in its frame.
@@ -31,19 +35,27 @@ def strayed(shapes: Sequence[Shape], pose: Floats, position: NDArray[np.float32]
         position: Of the particles (T, N, 3) [m].
         slack: How far beyond the hull they may be [m].
         up: Against gravity, in the world (3,).
+        moves: Whether it does.
     """
-    walls = walls_of(shapes, rotate(conjugate(pose[0, 3:]), up))
+    walls, lids = faces_of(shapes, rotate(conjugate(pose[0, 3:]), up))
     found = np.empty(position.shape[:2], dtype=bool)
+    poured, before = np.zeros(position.shape[1], dtype=bool), None
     for t, points in enumerate(position):  # one frame at a time: a recording may be larger than a cache
         places = rotate(conjugate(pose[t, 3:]), points - pose[t, :3])
         found[t] = (places @ walls[:, :3].T > walls[:, 3] + slack).any(axis=1)
+        if moves:
+            way = 0.0 if before is None else np.linalg.norm(places - before, axis=1)
+            near = (places @ lids[:, :3].T - lids[:, 3]).max(axis=1, initial=-np.inf) > -slack - way
+            poured |= near
+            found[t] &= ~poured
+            before = places
     return found
 
 
-def walls_of(shapes: Sequence[Shape], up: Floats) -> Floats:
-    """The faces of the hull, but for those that close the mouth, (K, 4): behind one is where n . x <= d."""
+def faces_of(shapes: Sequence[Shape], up: Floats) -> tuple[Floats, Floats]:
+    """The faces of the hull, n . x <= d behind each, (K, 4): walls and floor, and those that close the mouth."""
     surfaces = Solid([shape for shape in shapes if shape.collides]).surfaces
     equations = ConvexHull(np.vstack([surface.vertices for surface in surfaces])).equations
     faces = np.hstack([equations[:, :3], -equations[:, 3:]])
-    walls: Floats = faces[faces[:, :3] @ up < LID]
-    return walls
+    lid = faces[:, :3] @ up >= LID
+    return faces[~lid], faces[lid]
