@@ -28,6 +28,7 @@ from wsim.solvers.sph_search import ParticleSearch
 from wsim.solvers.sph_skins import Skins
 from wsim.solvers.sph_solids import FixedSolids
 from wsim.solvers.sph_wall_impulse import LEAST_LANES, WallImpulse
+from wsim.solvers.vessel_walls import VesselWalls
 from wsim.solvers.vessels import Vessel
 
 
@@ -153,20 +154,20 @@ class SolverSPH(SolverBase):
         place, home = model.particle_q.numpy(), world
         if self.openings:
             place, home = self.openings.known(place, world)
-        self.fixed = FixedSolids(model, self.config, containers, vessels)
+        self.vessels = VesselWalls(model, vessels, self.config.spacing)
+        self.fixed = FixedSolids(model, self.config, containers, self.vessels)
         self.fixed.start(place, home)
-        self.bodies = sample_bodies(model, self.config, vessels)
+        self.bodies = sample_bodies(model, self.config, self.vessels)
         self.body_particle_count = len(self.bodies.local)
         self.body_local = wp.array(self.bodies.local, dtype=wp.vec3)
         self.body_volume = wp.array(self.bodies.volume, dtype=float)
         self.body_owner = wp.array(self.bodies.owner, dtype=int)
         self.body_first = wp.array(self.bodies.first, dtype=int)
-        self.domain = domain_of(place, containers)
+        self.domain = domain_of(place, containers, vessels)
         if self.openings:
             self.domain = self.domain[0], self.domain[1] + ROOM * self.config.support
-        own = frozenset().union(*(vessel.shapes for vessel in vessels))
-        self.faces = FixedFaces(model, self.world_count, containers, self.config.support, own)
-        self.skins = Skins(model, self.world_count, self.config.spacing, own)
+        self.faces = FixedFaces(model, self.world_count, containers, self.config.support, self.vessels.made_of)
+        self.skins = Skins(model, self.world_count, self.config.spacing, vessels)
         self._bring_into_order()
 
     def _bring_into_order(self) -> None:
@@ -202,7 +203,7 @@ class SolverSPH(SolverBase):
         self.full = wp.zeros(self.fluid_count, dtype=float)
         self.body_position = wp.zeros(bodies, dtype=wp.vec3)
         self.body_velocity = wp.zeros(bodies, dtype=wp.vec3)
-        self.push = BodyPush(self.search, self.body_owner)
+        self.push = BodyPush(self.search, self.body_owner, self.vessels.bodies)
         # As many lanes as each has particles of the largest body to add up, and add_body_wrench lanes.
         largest = int(np.diff(self.body_first.numpy()).max(initial=0))
         self.lanes = max(LEAST_LANES, math.isqrt(largest))

@@ -5,7 +5,9 @@ As with a tank (`OpenBox`), a thin wall's own volume would leave the kernel of a
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import trimesh
@@ -25,6 +27,11 @@ BESIDE = 0.6  # of a piece's edge: how far off its middle it still goes on
 NOWHERE = -1e9  # [m]: as deep as what is no wall
 
 
+def own_label(label: str) -> str:
+    """The label of the mesh that Newton made a convex part of."""
+    return re.sub(r"_convex_\d+$", "", label)
+
+
 @dataclass(frozen=True)
 class Vessel:
     """A hollow object that fluid is in. Where it stands still its frame is the world's, else its body's."""
@@ -37,8 +44,19 @@ class Vessel:
     """Labels of the model's shapes that are its walls; they are not sampled again."""
     body: str | None = None
     """Label of the body that it is; None: it stands still."""
+    goes: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
+    """Lower and upper corner of the room that it moves in [m]; None: it stays where its fluid starts."""
     world: int = -1
     """The world that it stands in; -1 is every world."""
+
+    def homes(self, model: Any) -> list[tuple[int, int]]:
+        """The worlds of a model that it is in, and its body in each, or -1."""
+        worlds = range(max(1, model.world_count)) if self.world < 0 else (self.world,)
+        if self.body is None:
+            return [(world, -1) for world in worlds]
+        own = model.body_world.numpy()
+        found = [(max(0, int(own[k])), k) for k, label in enumerate(model.body_label) if str(label) == self.body]
+        return [(world, body) for world, body in found if world in worlds]
 
     def walls(self, spacing: float) -> Samples:
         """Layers of particles behind its inside up to the rim, as deep as a kernel reaches, in its frame.
