@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -31,7 +31,7 @@ class FixedFaces:
         world_count: W.
         containers: Tanks of all worlds.
         reach: How deep in a mesh a particle is still put back [m]; more than it goes in a step.
-        spared: Labels of shapes that have skins instead (`wsim.solvers.sph_skins`).
+        spared: Whether the shape of a label has a skin instead (`wsim.solvers.sph_skins`).
     """
 
     def __init__(
@@ -40,13 +40,13 @@ class FixedFaces:
         world_count: int,
         containers: Sequence[OpenBox],
         reach: float,
-        spared: frozenset[str] = frozenset(),
+        spared: Callable[[Any], bool] = lambda _: False,
     ) -> None:
         self._model, self._world_count = model, world_count
         kinds, scales = model.shape_type.numpy(), model.shape_scale.numpy().astype(float)
         self._poses = model.shape_transform.numpy().astype(float)
         fixed = ((model.shape_flags.numpy() & ShapeFlags.COLLIDE_SHAPES) != 0) & (model.shape_body.numpy() < 0)
-        fixed &= np.array([str(label) not in spared for label in model.shape_label], dtype=bool)
+        fixed &= np.array([not spared(label) for label in model.shape_label], dtype=bool)
         self._faces: Any = Faces()
         self._faces.reach = reach
         self.count = (

@@ -86,6 +86,8 @@ class CheckFluidMass(Check):
     def _drowned(evidence: Evidence, fluid: Fluid, i: int) -> float:
         """The volume of body i that is in the fluid's box at the start, if it is over it [m^3]."""
         q = evidence.body_q[0, i]
+        if evidence.world.bodies[i].prim == fluid.container:
+            return 0.0
         if np.any(np.abs(q[:2] - np.array(fluid.center[:2])) > np.array(fluid.size[:2]) / 2):
             return 0.0
         low, high = fluid.center[2] - fluid.size[2] / 2, fluid.center[2] + fluid.size[2] / 2
