@@ -35,11 +35,11 @@ def container_walls(inner_size: Array, spacing: float, support: float, sides: Ar
         spacing: Particle spacing [m].
         support: Radius of the kernel's support [m].
         sides: Which walls there are, shape (3, 2): lower and upper of each axis.
-        plane: One layer at y = 0 that stands for the box's whole depth.
+        plane: One layer at y = 0 that stands for one metre of depth.
     """
     axes = [lattice_axis(float(length), spacing) for length in inner_size]
     if plane:
-        axes[1] = (1, float(inner_size[1]))
+        axes[1] = (1, 1.0)
     ticks, outside = [], []
     for (count, edge), (lower, upper) in zip(axes, sides, strict=True):
         layers = layers_within(support, edge)

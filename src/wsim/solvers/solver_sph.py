@@ -61,8 +61,8 @@ class SolverSPH(SolverBase):
         body_wrench: Of the fluid on each body in the last step: force [N], torque about its centre of mass [N m].
 
     Raises:
-        ValueError: If the model has no particles, the settings are out of range, a container is too narrow, or too few
-            particles wait for the taps.
+        ValueError: If the model has no particles, the settings are out of range, a container is too narrow, too few
+            particles wait for the taps, or there are vessels in a plane.
     """
 
     Config = ConfigSPH
@@ -106,6 +106,8 @@ class SolverSPH(SolverBase):
         self.config = config
         self.fluid_count = model.particle_count
         self.world_count = max(1, model.world_count)
+        if vessels and config.dimensions == 2:
+            raise ValueError("SolverSPH: vessels in a flow of 2 dimensions; there a cup is shapes, or a tank")
         with wp.ScopedDevice(model.device):
             self._read_worlds()
             world = np.maximum(model.particle_world.numpy(), 0)
@@ -162,7 +164,8 @@ class SolverSPH(SolverBase):
         self.domain = domain_of(place, containers, vessels)
         if self.openings:
             self.domain = self.domain[0], self.domain[1] + ROOM * self.config.support
-        self.faces = FixedFaces(model, self.world_count, containers, self.config.support, self.vessels.made_of)
+        plane = self.config.dimensions == 2
+        self.faces = FixedFaces(model, self.world_count, containers, self.config.support, self.vessels.made_of, plane)
         self.skins = Skins(model, self.world_count, self.config.spacing, vessels)
         self._bring_into_order()
 
@@ -377,12 +380,12 @@ class SolverSPH(SolverBase):
             inputs=[*method, self.model.gravity, fluid, walls, bodies, self.model.particle_mass, dt],
             outputs=[state_out.particle_q, state_out.particle_qd, self._on_walls],
         )
-        worlds, solid = search.fluid.world, self.config.dimensions == 3
+        worlds = search.fluid.world
         if self.openings:
             self.openings.take_in(worlds, state_out.particle_q)
-        if len(self._on_walls) and self.faces.count and solid:
+        if len(self._on_walls) and self.faces.count:
             self.faces.keep_out(worlds, dt, state_out.particle_q, state_out.particle_qd, self._on_walls)
-        if self.skins.count and solid:
+        if self.skins.count:
             self.skins.keep_out(search.fluid, dt, state_out, state_in, self._on_walls)
         if self.openings:
             self.openings.lead(search.fluid, state_out, self._on_walls, dt)
