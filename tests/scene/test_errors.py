@@ -178,6 +178,17 @@ def test_overlapping_fluids_are_refused(scene: Scene) -> None:
     scene.fluid("above", size=(0.5, 0.5, 0.3), position=(0, 0, 0.67), spacing=0.1)
 
 
+def test_what_fills_a_tank_after_another_fluid_lies_on_it(scene: Scene) -> None:
+    water = scene.fluid("water", fills="tank", level=0.3, spacing=0.1)
+    with pytest.raises(SceneError, match=re.escape('level = 0.3 m is not above "water", which fills tank "tank"')):
+        scene.fluid("oil", fills="tank", level=0.3, spacing=0.1, density=900.0)
+    oil = scene.fluid("oil", fills="tank", level=0.5, spacing=0.1, density=900.0)
+    foam = scene.fluid("foam", fills="tank", volume=0.2 * oil.size[0] * oil.size[1], spacing=0.1, density=300.0)
+    assert oil.size[2] == pytest.approx(0.2)
+    assert oil.surface == pytest.approx(water.surface + 0.2)
+    assert foam.surface == pytest.approx(oil.surface + 0.2)
+
+
 def test_a_loop_without_a_plain_joint_is_refused() -> None:
     scene = Scene()
     bodies = [scene.box(f"b{i}", size=(0.1, 0.1, 0.1), position=(i, 0.0, 0.0)) for i in range(2)]

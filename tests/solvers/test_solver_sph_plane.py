@@ -246,7 +246,7 @@ def test_what_the_plane_does_not_meet_is_not_in_the_flow():
         model = builder.finalize(device="cpu")
         solver = SolverSPH(model, SolverSPH.Config(spacing=DP, speed_of_sound=10.0, dimensions=2))
         assert solver.wall_volume.numpy() == pytest.approx(np.full(32, DP**2))
-        assert solver.body_volume.numpy() == pytest.approx(np.full(32, DP**2))
+        assert solver.bodies.volume.numpy() == pytest.approx(np.full(32, DP**2))
         assert (solver.wall_position.numpy()[:, 1] == 0.0).all()
 
 

@@ -19,6 +19,7 @@ from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.sph_domain import domain_of
 from wsim.solvers.sph_faces import FixedFaces
 from wsim.solvers.sph_faults import in_words, inspected
+from wsim.solvers.sph_liquids import Liquids, has_liquids, register_liquids
 from wsim.solvers.sph_mouths import Drain, Tap
 from wsim.solvers.sph_openings import ROOM, Openings
 from wsim.solvers.sph_particles import SortedParticles
@@ -59,6 +60,7 @@ class SolverSPH(SolverBase):
     Attributes:
         openings: The taps and drains; None without any.
         body_wrench: Of the fluid on each body in the last step: force [N], torque about its centre of mass [N m].
+        liquids: What each particle is of, where worlds have several liquids; else None.
 
     Raises:
         ValueError: If the model has no particles, the settings are out of range, a container is too narrow, too few
@@ -68,11 +70,12 @@ class SolverSPH(SolverBase):
     Config = ConfigSPH
 
     @classmethod
-    def register_custom_attributes(cls, builder: newton.ModelBuilder) -> None:
+    def register_custom_attributes(cls, builder: newton.ModelBuilder, several_liquids: bool = False) -> None:
         """Register what the solver reads beside Newton's own particle arrays.
 
         `sph:pressure` [Pa] is a state variable of each particle, p = c^2 (rho - rho_0). `sph:rest_density` [kg/m^3]
-        and `sph:viscosity` [Pa s] belong to a world; 0 takes the `Config`'s.
+        and `sph:viscosity` [Pa s] belong to a world; 0 takes the `Config`'s. With `several_liquids` each particle has
+        `sph:liquid_density` and `sph:liquid_viscosity`, too; where its density is 0 it is of the world's.
         """
         frequency, assignment = newton.Model.AttributeFrequency, newton.Model.AttributeAssignment
         for name, of, where in (
@@ -85,6 +88,8 @@ class SolverSPH(SolverBase):
                     name=name, frequency=of, assignment=where, dtype=wp.float32, default=0.0, namespace="sph"
                 )
             )
+        if several_liquids:
+            register_liquids(builder)
 
     def __init__(
         self,
@@ -110,7 +115,8 @@ class SolverSPH(SolverBase):
             raise ValueError("SolverSPH: vessels in a flow of 2 dimensions; there a cup is shapes, or a tank")
         with wp.ScopedDevice(model.device):
             self._read_worlds()
-            world = np.maximum(model.particle_world.numpy(), 0)
+            world = self._fluid_world = np.maximum(model.particle_world.numpy(), 0)
+            self._read_liquids()
             self.openings = (
                 Openings(model, config, world, self.rest_density.numpy(), taps, drains) if taps or drains else None
             )
@@ -143,16 +149,25 @@ class SolverSPH(SolverBase):
                 values = np.where(given > 0.0, given, values)
             setattr(self, name, wp.array(values, dtype=float))
 
+    def _read_liquids(self) -> None:
+        """What each particle is of, where a world has several liquids."""
+        worlds = self.rest_density.numpy(), self.viscosity.numpy()
+        self.liquids = Liquids(self.model, self._fluid_world, *worlds) if has_liquids(self.model) else None
+
+    def at_rest(self, world: int) -> np.ndarray:
+        """Density at rest [kg/m^3]: a world's, (), or where it has several liquids that of each particle, (n,)."""
+        return self.liquids.density if self.liquids else np.asarray(self.rest_density.numpy()[world])
+
     def notify_model_changed(self, flags: newton.ModelFlags | int) -> None:
-        """Read the worlds' densities and viscosities again; gravity and masses are read in every step."""
+        """Read the liquids' densities and viscosities again; gravity and masses are read in every step."""
         if flags & newton.ModelFlags.MODEL_PROPERTIES:
             with wp.ScopedDevice(self.model.device):
                 self._read_worlds()
+                self._read_liquids()
 
     def _sample_solids(self, containers: tuple[OpenBox, ...], vessels: Sequence[Vessel], world: np.ndarray) -> None:
         """Fill the solids with particles: bodies, and what stands still where the fluid is or comes to."""
         model = self.model
-        self._fluid_world = world
         place, home = model.particle_q.numpy(), world
         if self.openings:
             place, home = self.openings.known(place, world)
@@ -190,6 +205,7 @@ class SolverSPH(SolverBase):
             self.world_count,
             self.bodies.sampled.crowd((1.0 + self.config.skin) * self.config.support),
             self.openings.stage if self.openings else None,
+            self.liquids is not None,
         )
         self.programs = self.search.programs
         still = wp.zeros(self.wall_count, dtype=wp.vec3)
@@ -324,6 +340,8 @@ class SolverSPH(SolverBase):
             ],
             outputs=[fluid.point, fluid.motion, fluid.full],
         )
+        if self.liquids:
+            self.liquids.gather(fluid, self.model.particle_mass, self.config.speed_of_sound)
         self._gather_solid(self.search.bodies, self.bodies.position, self.bodies.velocity, self.bodies.volume)
         self.push.gather()
 
@@ -365,7 +383,7 @@ class SolverSPH(SolverBase):
                 self.programs.extrapolate,
                 dim=solid.count,
                 inputs=[*method, self.viscosity, gravity, fluid, solid.species],
-                outputs=[solid.motion, solid.facing],
+                outputs=[solid.motion, solid.facing, solid.liquid],
             )
 
     def _move_fluid(self, state_in: newton.State, state_out: newton.State, dt: float) -> None:

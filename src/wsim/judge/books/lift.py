@@ -120,7 +120,7 @@ class Surroundings:
         ]  # (B, 2, K)
         half = np.array(container.inner_size) / 2.0
         self._low, self._high = np.array(container.inner_center) - half, np.array(container.inner_center) + half
-        self._sound = fluid.speed_of_sound or float(evidence.recording.metadata.get("speed_of_sound") or math.nan)
+        self._sound = evidence.sound(fluid) or math.nan
         self._mass = particle_mass(fluid)
 
     @cached_property

@@ -220,7 +220,7 @@ class CheckHydrostatic(Check):
         """One finding for each fluid that is at rest in a container over the final window: the slope [Pa/m]."""
         found = []
         for fluid in evidence.world.fluids:
-            sound = fluid.speed_of_sound or float(evidence.recording.metadata.get("speed_of_sound") or 0.0)
+            sound = evidence.sound(fluid)
             track = evidence.track(fluid)
             if sound <= 0.0 or track.density.size == 0 or evidence.gravity <= 0.0:
                 continue
@@ -237,7 +237,7 @@ class CheckHydrostatic(Check):
         if container is None or not len(frames):
             return None
         level = evidence.level(fluid)
-        height = level.height - level.floor
+        height = level.height - level.bottom
         speed = math.sqrt(float(track.mean(np.einsum("tni,tni->tn", track.velocity, track.velocity))[frames].mean()))
         if height < self.layers * fluid.spacing or speed > self.still * evidence.velocity_scale(height):
             return None

@@ -158,6 +158,7 @@ def exit_of_fluid(media: Media, entry: Face, origin: wp.vec3, direction: wp.vec3
     """The face where a ray that runs inside a fluid leaves it for good, given the first face it meets.
 
     Gaps of air shorter than the fluid's are no gaps: particles keep that far off a body's skin and off each other.
+    Where another fluid begins behind one it is left there.
     """
     face = entry
     gap = media.fluid_gap[entry.medium]
@@ -171,6 +172,9 @@ def exit_of_fluid(media: Media, entry: Face, origin: wp.vec3, direction: wp.vec3
         again = face_of_fluid(media, origin, direction, start, gap)
         if again.inside or again.t - face.t > gap:
             break
+        if again.medium != face.medium:
+            face.t = again.t
+            break
         start = again.t + 2.0e-5 * (1.0 + again.t)
         face = face_of_fluid(media, origin, direction, start, FAR)
     return face
@@ -178,10 +182,20 @@ def exit_of_fluid(media: Media, entry: Face, origin: wp.vec3, direction: wp.vec3
 
 @wp.func
 def fluid_after(media: Media, known: Face, origin: wp.vec3, direction: wp.vec3, start: float, t_end: float) -> Face:
-    """The fluid's first face after `start`: the known one while it lies ahead."""
+    """The fluid's first face after `start`: the known one while it lies ahead.
+
+    Surfaces of two fluids that lie on each other may overlap by a hair: a ray that comes into one and next leaves
+    another has been in that.
+    """
     face = known
     if media.fluid_mesh != wp.uint64(0) and known.t < start:
         face = face_of_fluid(media, origin, direction, start, FAR)
+        if media.fluid_gap.shape[0] > 1 and not face.inside and face.t < t_end:
+            behind = face_of_fluid(media, origin, direction, face.t + 2.0e-5 * (1.0 + face.t), FAR)
+            if behind.inside and behind.medium != face.medium:
+                face.inside = True
+                face.medium = behind.medium
+                return face
         if face.inside:
             face = exit_of_fluid(media, face, origin, direction, t_end)
     return face

@@ -21,14 +21,19 @@ def container(item: PlanObject) -> str | None:
     return relation.ref if relation is not None else None
 
 
+def level(item: PlanObject) -> float:
+    """How high a fluid fills its container [m]; infinity where a block of it stands there."""
+    relation = item.relation("FREE-SURFACE-AT")
+    return math.inf if relation is None or relation.value is None else relation.value
+
+
 def arguments(draft: Draft, item: PlanObject) -> list[str]:
     """All arguments but the name."""
     plan = draft.plan
     held = container(item)
-    level = item.relation("FREE-SURFACE-AT")
-    if held is not None and level is not None and level.value is not None:
-        volume: Sequence[float] = _in_the_end(plan, item, plan.object(held).size, level.value)
-        found = [f"fills={draft.handles[held]}", f"level={number(level.value)}"]
+    if held is not None and level(item) < math.inf:
+        volume: Sequence[float] = _in_the_end(plan, item, plan.object(held).size, level(item))
+        found = [f"fills={draft.handles[held]}", f"level={number(level(item))}"]
     else:
         volume = item.size
         found = [f"size={tuple_of(item.size)}", f"position={tuple_of(position(item))}"]
