@@ -98,7 +98,7 @@ class Evidence(Recorded):
             raise MissingError(f"{fluid.prim} has no container, or no particles in the last second: it has no level")
         chosen = frames[np.linspace(0, len(frames) - 1, min(LEVEL_FRAMES, len(frames))).astype(int)]
         floor = container.inner_center[2] - container.inner_size[2] / 2
-        inside = 1.0 - self.containment(container, fluid).outside[chosen]
+        inside = 1.0 - self.containment(container, fluid).elsewhere[chosen]
         volume = fluid.cell * float(np.mean(track.count[chosen] * inside))
         height = self._level_of_volume(container, floor, volume)
         return Level(height, self._level_seen(fluid, container, track, chosen, height), floor)
