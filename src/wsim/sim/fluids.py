@@ -216,15 +216,13 @@ def _standing(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Arr
     """Where particles of a fluid are: not where a solid already is, (n, 3) [m]."""
     position = places_in(fluid, world) if fluid.volume is not None else _in_box(fluid, world)
     free = np.ones(len(position), dtype=bool)
-    margin, around = 0.4 * fluid.spacing, {container.prim for container in world.containers}
-    if fluid.volume is not None:
-        around.add(str(fluid.container))
+    margin = 0.4 * fluid.spacing
     for body in world.bodies:
-        if body.prim not in around:
+        if body.prim != fluid.container:
             local = rotate(conjugate(np.array(body.rotation)), position - np.array(body.position))
             free &= ~_inside(body.shapes, local, margin, meshes.get(body.prim, []))
     for static in world.statics:
-        if static.prim not in around:  # whose fluid is cut to its walls
+        if static.prim != fluid.container:  # to whose walls the fluid is cut
             free &= ~_inside(static.shapes, position, margin, meshes.get(static.prim, []))
     if not free.any():
         raise UserError(f"{fluid.prim}: bodies leave no room for fluid of spacing {fluid.spacing} m in {fluid.size} m")
@@ -276,7 +274,9 @@ def _inside(shapes: list[Shape], points: Array, margin: float, meshes: list[Dept
     """Which points lie in an object's shapes, or within `margin` [m] of them, all in its frame."""
     inside = np.zeros(len(points), dtype=bool)
     for shape in shapes:
-        if shape.collides and shape.kind not in ("mesh", "plane"):
+        if shape.collides and shape.kind == "plane":
+            inside |= kind_of(shape).depth(into(shape, points)) > -margin
+        elif shape.collides and shape.kind != "mesh":
             inside |= np.maximum.reduce(kind_of(shape).beyond(into(shape, points))) < margin
     for depth in meshes:
         inside |= depth(points) > -margin

@@ -76,7 +76,7 @@ class CheckFluidMass(Check):
         for shape in (shape for static in evidence.world.statics for shape in static.shapes if shape.collides):
             reach = 0.5 * float(np.linalg.norm(size)) + fluid.spacing
             own = fluid.container is not None and within(shape.prim, fluid.container)  # it ends at its tank's walls
-            if own or shape.kind == "plane" or _beside(shape, middle, reach):
+            if own or (shape.kind != "plane" and _beside(shape, middle, reach)):
                 continue
             depth = np.maximum(depth, kind_of(shape).depth(into(shape, places)))
         cell = float(size.prod()) / len(places)
