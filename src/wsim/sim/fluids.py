@@ -17,10 +17,11 @@ from wsim.geometry.shapes import into, kind_of, reach
 from wsim.scene.hollows import hollow_of, surface_of_wall
 from wsim.scene.world import Fluid, Quat, Shape, Vec3, World
 from wsim.sim.filling import spread
-from wsim.sim.openings import fastest_poured, waiting
+from wsim.sim.openings import fastest_poured, taps_of, waiting
 from wsim.solvers.inside import depth_in, is_open, solid_of
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.sph_config import ConfigSPH
+from wsim.solvers.sph_mouths import in_pipe
 from wsim.solvers.vessels import Vessel
 
 SOUND_OVER_SPEED = 10.0  # keeps the density within 1 % (Monaghan 1994)
@@ -205,7 +206,7 @@ def seed(fluid: Fluid, world: World, config: ConfigSPH, meshes: dict[str, list[D
     Raises:
         UserError: If there is no room for it.
     """
-    position = _standing(fluid, world, meshes) if fluid.size[2] > 0.0 else np.zeros((0, 3))
+    position = _standing(fluid, world, config, meshes) if fluid.size[2] > 0.0 else np.zeros((0, 3))
     depth = 0.5 * fluid.size[2] + fluid.center[2] - position[:, 2]
     pressure = fluid.density * abs(world.gravity[2]) * np.maximum(depth, 0.0)
     there, count = len(position), waiting(fluid, world, config, fluid.cell)
@@ -219,8 +220,8 @@ def seed(fluid: Fluid, world: World, config: ConfigSPH, meshes: dict[str, list[D
     )
 
 
-def _standing(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Array:
-    """Where particles of a fluid are: not where a solid already is, (n, 3) [m]."""
+def _standing(fluid: Fluid, world: World, config: ConfigSPH, meshes: dict[str, list[Depth]]) -> Array:
+    """Where particles of a fluid are: not where a solid or the pipe of a tap already is, (n, 3) [m]."""
     position = _in_vessel(fluid, world) if fluid.volume is not None else _in_box(fluid, world)
     free = np.ones(len(position), dtype=bool)
     margin, around = 0.4 * fluid.spacing, {container.prim for container in world.containers}
@@ -233,6 +234,8 @@ def _standing(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Arr
     for static in world.statics:
         if static.prim not in around:  # whose fluid is cut to its walls
             free &= ~_inside(static.shapes, position, margin, meshes.get(static.prim, []))
+    for tap in taps_of(world):
+        free &= ~in_pipe(tap, config, fluid.cell, position, margin)
     if not free.any():
         raise UserError(f"{fluid.prim}: bodies leave no room for fluid of spacing {fluid.spacing} m in {fluid.size} m")
     return position[free]

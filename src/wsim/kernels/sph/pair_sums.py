@@ -170,6 +170,21 @@ _EXTRAPOLATION = (
     """,
 )
 
+_FREE = (
+    """
+    const int* __restrict__ orders = other.order.data;
+    const int* __restrict__ stages = other.stage.data;
+    const float w0 = common[0], w1 = common[1], w2 = common[2];
+    float total = 0.0f, pressure = 0.0f;
+    """,
+    """
+            const float w = stages[orders[j]] == 0 ? t2 * t2 * (1.0f + 4.0f * u) : 0.0f;
+            total += w;
+            pressure += w * (n.w + w0 * d0 + w1 * d1 + w2 * d2);
+    """,
+    "return wp::vec_t<2, float>(total, pressure);",
+)
+
 _MOMENTUM = (
     """
     const float v0 = v[0], v1 = v[1], v2 = v[2];
@@ -241,6 +256,7 @@ class PairSums:
             density diffusion over those that hand on a pressure in a gap.
         flux: `Flux`, over fluid around what stands still.
         extrapolation: `Extrapolated`, over fluid.
+        free: Sums of W and of W times pressure, over fluid that no opening leads.
         force: Force on a particle per volume, over fluid or bodies.
         force_at_walls: `AtWalls`, over walls.
         way: Sum of W times the way to them, over walls or other bodies.
@@ -258,6 +274,7 @@ class PairSums:
     continuity_at_bodies: wp.Function
     flux: wp.Function
     extrapolation: wp.Function
+    free: wp.Function
     force: dict[int, wp.Function]
     force_at_walls: wp.Function
     way: dict[int, wp.Function]
@@ -335,6 +352,7 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool,
         continuity_at_bodies=total(_CONTINUITY_AT_BODIES, wp.vec4, BODIES),
         flux=total(_FLUX, Flux),
         extrapolation=total(_EXTRAPOLATION, Extrapolated),
+        free=total(_FREE, wp.vec2),
         force={kind: total(_MOMENTUM, wp.vec3, kind) for kind in (FLUID, BODIES)},
         force_at_walls=total(_MOMENTUM_AT_WALLS, AtWalls, WALLS),
         way={kind: total(between(WAY, words), wp.vec3, kind) for kind, words in ACROSS.items()},
