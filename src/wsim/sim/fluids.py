@@ -15,11 +15,12 @@ from wsim.geometry.filled import box_lattice
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.geometry.shapes import into, kind_of, reach
 from wsim.scene.world import Fluid, Shape, World
-from wsim.sim.openings import fastest_poured, waiting
+from wsim.sim.openings import fastest_poured, taps_of, waiting
 from wsim.sim.vessels import carried_speed, places_in
 from wsim.solvers.inside import depth_in, is_open, solid_of
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.sph_config import ConfigSPH
+from wsim.solvers.sph_mouths import in_pipe
 
 SOUND_OVER_SPEED = 10.0  # keeps the density within 1 % (Monaghan 1994)
 
@@ -188,7 +189,7 @@ def seed(fluid: Fluid, world: World, config: ConfigSPH, meshes: dict[str, list[D
     Raises:
         UserError: If there is no room for it.
     """
-    position = _standing(fluid, world, meshes) if fluid.size[2] > 0.0 else np.zeros((0, 3))
+    position = _standing(fluid, world, config, meshes) if fluid.size[2] > 0.0 else np.zeros((0, 3))
     depth = 0.5 * fluid.size[2] + fluid.center[2] - position[:, 2]
     over = sum(_over(fluid, other, position) for other in world.fluids if other is not fluid)
     pressure = abs(world.gravity[2]) * (fluid.density * np.maximum(depth, 0.0) + over)
@@ -212,8 +213,8 @@ def _over(fluid: Fluid, other: Fluid, position: Array) -> Array:
     return np.where(off.all(axis=1), other.density * other.size[2], 0.0)
 
 
-def _standing(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Array:
-    """Where particles of a fluid are: not where a solid already is, (n, 3) [m]."""
+def _standing(fluid: Fluid, world: World, config: ConfigSPH, meshes: dict[str, list[Depth]]) -> Array:
+    """Where particles of a fluid are: not where a solid or the pipe of a tap already is, (n, 3) [m]."""
     position = places_in(fluid, world) if fluid.volume is not None else _in_box(fluid, world)
     free = np.ones(len(position), dtype=bool)
     margin = 0.4 * fluid.spacing
@@ -224,6 +225,8 @@ def _standing(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Arr
     for static in world.statics:
         if static.prim != fluid.container:  # to whose walls the fluid is cut
             free &= ~_inside(static.shapes, position, margin, meshes.get(static.prim, []))
+    for tap in taps_of(world):
+        free &= ~in_pipe(tap, config, fluid.cell, position, margin)
     if not free.any():
         raise UserError(f"{fluid.prim}: bodies leave no room for fluid of spacing {fluid.spacing} m in {fluid.size} m")
     return position[free]
