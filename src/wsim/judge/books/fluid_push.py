@@ -53,7 +53,11 @@ class Carried:
 
 
 class FluidPush:
-    """What the fluids' particles give to each body."""
+    """What the fluids' particles give to each body.
+
+    Attributes:
+        vessels: Bodies that fluid is in.
+    """
 
     def __init__(self, evidence: Evidence, method: Method) -> None:
         self._evidence, self._method = evidence, method
@@ -64,6 +68,8 @@ class FluidPush:
                 for f, t in zip(evidence.world.fluids, self._tracks, strict=True)
             ]
         )
+        holders = {fluid.container for fluid in evidence.world.fluids if fluid.volume is not None}
+        self.vessels = frozenset(i for i, body in enumerate(evidence.world.bodies) if body.prim in holders)
         self.filled = _filled(evidence)
         solids = evidence.recording.solids
         self._walls = _in_double(solids.walls) if solids else None
@@ -118,7 +124,7 @@ class FluidPush:
         place, volume, gradient = (
             np.concatenate([getattr(each, name) for each in solids]) for name in ("place", "volume", "gradient")
         )
-        return Solid(place, volume, owner, gradient, joined(takes))
+        return Solid(place, volume, owner, gradient, joined(takes), self.vessels)
 
     def _carried(self, i: int, frame: int, samples: Samples) -> Carried:
         q = self._evidence.body_q[frame, i].astype(np.float64)
