@@ -13,8 +13,9 @@ from newton import GeoType, ParticleFlags, ShapeFlags
 from wsim.errors import UserError
 from wsim.geometry.filled import box_lattice
 from wsim.geometry.rotations import conjugate, rotate
-from wsim.geometry.shapes import into, kind_of, reach
+from wsim.geometry.shapes import into, kind_of
 from wsim.scene.world import Fluid, Shape, World
+from wsim.sim.falls import over_all, poured
 from wsim.sim.openings import fastest_poured, taps_of, waiting
 from wsim.sim.vessels import carried_speed, places_in
 from wsim.solvers.inside import depth_in, is_open, solid_of
@@ -122,22 +123,15 @@ def expected_speed(world: World) -> float:
     for fluid in world.fluids:
         # A fluid that fills its container from wall to wall can only slosh, at the shallow-water wave's speed;
         # a column in one falls by its height, a free one to the lowest that there is.
-        falls = 2.0 * (fluid.size[2] if fluid.container else max(_over_all(fluid, world), fluid.size[2]))
+        falls = 2.0 * (fluid.size[2] if fluid.container else max(over_all(fluid, world), fluid.size[2]))
         wave = math.sqrt((fluid.size[2] if _fills(fluid, world) else falls) * g)
         speeds += [math.hypot(*fluid.velocity, wave), carried_speed(fluid, world)]
+        speeds.append(math.sqrt(2.0 * g * poured(fluid, world)))
     for body in world.bodies:
         bottom = body.position[2] - 0.5 * min((kind_of(shape).thinnest for shape in body.shapes), default=0.0)
         drop = max((bottom - (f.center[2] + 0.5 * f.size[2]) for f in world.fluids), default=0.0)
         speeds.append(math.sqrt(2.0 * g * max(drop, 0.0)))
     return max(speeds)
-
-
-def _over_all(fluid: Fluid, world: World) -> float:
-    """How high the top of a fluid is above the lowest point of what stands still, and above planes [m]."""
-    still = [shape for static in world.statics for shape in static.shapes if shape.collides]
-    planes = [shape.position[2] for shape in still if shape.kind == "plane"]
-    lows = planes or [float(reach(shape, np.array([[0.0, 0.0, 0.0, 1.0]]))[0][0]) for shape in still]
-    return fluid.center[2] + 0.5 * fluid.size[2] - min(lows, default=math.inf)
 
 
 def _fills(fluid: Fluid, world: World) -> bool:

@@ -416,5 +416,5 @@ class SolverSPH(SolverBase):
             self.openings.lead(self.method, search.fluid, state_out, self._on_walls, dt)
         if len(self._on_walls):
             self._wall_impulse.add(self._on_walls, dt)
-            if self.bodies.count:
+            if len(self.push.on_walls):
                 self._wall_impulse.add(self.push.on_walls, dt, self.push.world_first)
