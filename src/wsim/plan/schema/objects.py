@@ -76,6 +76,8 @@ class Registration(Strict):
     density: Positive | None = None  # [kg/m^3]
     spacing: Positive | None = None  # of a fluid's particles [m]
     viscosity: NotNegative | None = None  # of a fluid [Pa s]
+    yield_stress: NotNegative | None = None  # of a fluid [Pa]: mud, paint, toothpaste
+    flow_index: Positive | None = None  # of a fluid: below 1 it thins when sheared
     actuation: list[Actuation] = Field(default_factory=list, max_length=100)
 
     @model_validator(mode="after")
