@@ -53,7 +53,7 @@ CASES: list[tuple[Callable[[Scene], object], str]] = [
     (lambda s: s.fluid("w", fills="tank", level=0.05, spacing=0.1), "must hold at least one particle"),
     (lambda s: s.fluid("w", fills="tank", level=0.5, spacing=0.001), "5e+08 particles"),
     (lambda s: s.fluid("w", fills="tank", spacing=0.1), "fills is given without level"),
-    (lambda s: s.fluid("w", fills="block", level=0.5, spacing=0.1), 'fills = "block" moves'),
+    (lambda s: s.fluid("w", fills="block", level=0.5, spacing=0.1), 'fills = "block" holds no fluid'),
     (lambda s: s.fluid("w", fills="tnk", level=0.5, spacing=0.1), 'did you mean "tank"?'),
     (lambda s: s.fluid("w", spacing=0.1), "give fills= and level="),
     (lambda s: s.fluid("w", size=UNIT, position=(0, 0, 9), spacing=NAN), "spacing = nan must be finite"),

@@ -14,14 +14,12 @@ from wsim.errors import UserError
 from wsim.geometry.filled import box_lattice
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.geometry.shapes import into, kind_of, reach
-from wsim.scene.hollows import hollow_of, surface_of_wall
-from wsim.scene.world import Fluid, Quat, Shape, Vec3, World
-from wsim.sim.filling import spread
+from wsim.scene.world import Fluid, Shape, World
 from wsim.sim.openings import fastest_poured, waiting
+from wsim.sim.vessels import carried_speed, places_in
 from wsim.solvers.inside import depth_in, is_open, solid_of
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.sph_config import ConfigSPH
-from wsim.solvers.vessels import Vessel
 
 SOUND_OVER_SPEED = 10.0  # keeps the density within 1 % (Monaghan 1994)
 
@@ -53,32 +51,6 @@ def containers_of(world: World, k: int = -1) -> list[OpenBox]:
         OpenBox(c.inner_center, c.inner_size, c.rotation, walls.get(c.prim, frozenset()), world=k)
         for c in world.containers
     ]
-
-
-def vessels_of(world: World, k: int = -1) -> list[Vessel]:
-    """What fluid fills beside tanks in world k, or in all, with the labels of the shapes that each stands for."""
-    found = {}
-    for fluid in world.fluids:
-        if fluid.volume is not None and fluid.container not in found:
-            shapes, _, turn = _held_by(fluid, world)
-            walls = [shape for shape in shapes if shape.collides and shape.kind != "plane"]
-            found[fluid.container] = Vessel(
-                surfaces=tuple(surface_of_wall(shape) for shape in walls),
-                upright=turn,
-                shapes=frozenset(shape.prim for shape in walls),
-                body=fluid.container if any(body.prim == fluid.container for body in world.bodies) else None,
-                world=k,
-            )
-    return list(found.values())
-
-
-def _held_by(fluid: Fluid, world: World) -> tuple[list[Shape], Vec3, Quat]:
-    """The shapes of what holds a fluid, and the pose of their frame."""
-    for body in world.bodies:
-        if body.prim == fluid.container:
-            return body.shapes, body.position, body.rotation
-    shapes = next((static.shapes for static in world.statics if static.prim == fluid.container), [])
-    return shapes, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 
 
 def heaviest(world: World) -> Fluid:
@@ -161,7 +133,7 @@ def expected_speed(world: World) -> float:
         # a column in one falls by its height, a free one to the lowest that there is.
         falls = 2.0 * (fluid.size[2] if fluid.container else max(_over_all(fluid, world), fluid.size[2]))
         wave = math.sqrt((fluid.size[2] if _fills(fluid, world) else falls) * g)
-        speeds.append(math.hypot(*fluid.velocity, wave))
+        speeds += [math.hypot(*fluid.velocity, wave), carried_speed(fluid, world)]
     for body in world.bodies:
         bottom = body.position[2] - 0.5 * min((kind_of(shape).thinnest for shape in body.shapes), default=0.0)
         drop = max((bottom - (f.center[2] + 0.5 * f.size[2]) for f in world.fluids), default=0.0)
@@ -257,7 +229,7 @@ def _over(fluid: Fluid, other: Fluid, position: Array) -> Array:
 
 def _standing(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Array:
     """Where particles of a fluid are: not where a solid already is, (n, 3) [m]."""
-    position = _in_vessel(fluid, world) if fluid.volume is not None else _in_box(fluid, world)
+    position = places_in(fluid, world) if fluid.volume is not None else _in_box(fluid, world)
     free = np.ones(len(position), dtype=bool)
     margin, around = 0.4 * fluid.spacing, {container.prim for container in world.containers}
     if fluid.volume is not None:
@@ -279,15 +251,6 @@ def _in_box(fluid: Fluid, world: World) -> Array:
     cells = box_lattice(np.array(fluid.size), fluid.spacing)
     rotation = next((c.rotation for c in world.containers if c.prim == fluid.container), (0.0, 0.0, 0.0, 1.0))
     return rotate(np.array(rotation), cells.position) + np.array(fluid.center)
-
-
-def _in_vessel(fluid: Fluid, world: World) -> Array:
-    """Places in the hollow of the fluid's vessel (n, 3) [m]."""
-    try:
-        hollow = hollow_of(*_held_by(fluid, world), fluid.spacing)
-    except ValueError as error:
-        raise UserError(f"{fluid.prim}: {fluid.container} holds no fluid: {error}; name a vessel") from error
-    return spread(hollow.filling(fluid.center[2] + 0.5 * fluid.size[2]), fluid.spacing, fluid.particles)
 
 
 @dataclass(frozen=True)

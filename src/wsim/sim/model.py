@@ -34,7 +34,6 @@ from wsim.sim.fluids import (
     seed,
     several_liquids,
     sph_config,
-    vessels_of,
 )
 from wsim.sim.forward import forward_only
 from wsim.sim.numbers import add_worlds, differences, texts
@@ -44,6 +43,7 @@ from wsim.sim.placed import aim_drives, place_joints
 from wsim.sim.stated import confirmed, numbers_of, replicate, state_numbers, unstated
 from wsim.sim.surfaces import take_cylinders, take_surfaces
 from wsim.sim.time_step import TimeStep, choose_time_step
+from wsim.sim.vessels import vessels_of
 from wsim.solvers.breaking import Breakable
 from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.shapes import OpenBox

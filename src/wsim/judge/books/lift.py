@@ -104,11 +104,16 @@ class Column:
 
 
 class Surroundings:
-    """A fluid in an upright tank, about its bodies, at K frames."""
+    """A fluid in an upright tank, about its bodies, at K frames.
+
+    Attributes:
+        frames: Which they are, (K,).
+    """
 
     def __init__(self, evidence: Evidence, fluid: Fluid, container: Container, frames: NDArray[np.intp]) -> None:
         """`frames` are those of the evidence that the fluid was recorded at."""
         self._evidence, self._fluid, self._track = evidence, fluid, evidence.track(fluid)
+        self.frames = frames
         self._q = evidence.body_q[frames]
         self._heights = np.array([evidence.ends(i) for i in range(len(evidence.world.bodies))])[
             :, :, frames

@@ -58,6 +58,23 @@ def fresnel(cos_angle: float, ior_from: float, ior_to: float) -> float:
 
 
 @wp.func
+def refracted(direction: wp.vec3, normal: wp.vec3, ior_from: float, ior_to: float) -> wp.vec3:
+    """Where a ray goes on behind a face into a denser medium, by Snell's law.
+
+    Args:
+        direction: Of the ray, unit.
+        normal: Of the face, unit, to either side.
+        ior_from: Refractive index before the face.
+        ior_to: Behind it, not less.
+    """
+    facing = wp.where(wp.dot(direction, normal) < 0.0, normal, -normal)
+    ratio = ior_from / ior_to
+    cosine = -wp.dot(direction, facing)
+    beyond = wp.sqrt(1.0 - ratio * ratio * (1.0 - cosine * cosine))
+    return wp.normalize(ratio * direction + (ratio * cosine - beyond) * facing)
+
+
+@wp.func
 def span_of_box(half: wp.vec3, to_world: wp.transform, origin: wp.vec3, direction: wp.vec3) -> wp.vec2:
     """Where a ray enters and leaves a box; where it misses, the second is the smaller."""
     rotation = wp.transform_get_rotation(to_world)

@@ -47,6 +47,20 @@ def gather_bodies(
     sorted_handed[s] = wp.vec4(h[0], h[1], h[2], float(owner[i]))
 
 
+@wp.kernel(enable_backward=False)
+def spare_vessels(
+    # Data in:
+    order: wp.array(dtype=int),
+    of_vessel: wp.array(dtype=int),
+    # Data out:
+    across: wp.array(dtype=wp.vec4),
+):
+    """Let no gap be at the walls of a vessel: their particles lie behind its inside, in what is next to it."""
+    s = wp.tid()
+    if of_vessel[order[s]] > 0:
+        across[s] = wp.vec4(0.0, 0.0, 0.0, 0.0)
+
+
 def make_look_across(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
     """The kernel that finds where other solids are, given the kinds of solids."""
     of_walls, of_bodies = sums.way[WALLS], sums.way[BODIES]
