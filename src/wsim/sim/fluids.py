@@ -72,7 +72,9 @@ def heaviest(world: World) -> Fluid:
 
 
 def several_liquids(worlds: Sequence[World]) -> bool:
-    """Whether two fluids of a world differ, so that each particle needs its own numbers."""
+    """Whether two fluids of a world differ, or one yields, so that each particle needs its own numbers."""
+    if not all(fluid.newtonian for world in worlds for fluid in world.fluids):
+        return True
     return any(
         not math.isclose(getattr(world.fluids[0], name), getattr(other, name))
         for world in worlds
@@ -112,8 +114,16 @@ def of_worlds(worlds: Sequence[World]) -> dict[str, list[float]]:
 def largest_step(world: World, config: ConfigSPH) -> float:
     """The longest step that a world's fluids can take under common settings [s]."""
     return min(
-        replace(config, rest_density=fluid.density, viscosity=fluid.viscosity).max_time_step for fluid in world.fluids
+        replace(config, rest_density=fluid.density, viscosity=_most_viscous(fluid, config)).max_time_step
+        for fluid in world.fluids
     )
+
+
+def _most_viscous(fluid: Fluid, config: ConfigSPH) -> float:
+    """Viscosity of a fluid, of what yields where it does not flow [Pa s]."""
+    if fluid.newtonian:
+        return fluid.viscosity
+    return float(config.largest_viscosity_of(np.array([fluid.density]), np.array([fluid.viscosity]))[0])
 
 
 def expected_speed(world: World) -> float:
@@ -195,7 +205,12 @@ def seed(fluid: Fluid, world: World, config: ConfigSPH, meshes: dict[str, list[D
         mass=np.full(there + count, fluid.density * fluid.cell),
         pressure=np.append(pressure, np.zeros(count)),
         flags=np.repeat(np.array([int(ParticleFlags.ACTIVE), 0], dtype=np.int32), [there, count]),
-        liquid={"liquid_density": fluid.density, "liquid_viscosity": fluid.viscosity},
+        liquid={
+            "liquid_density": fluid.density,
+            "liquid_viscosity": fluid.viscosity,
+            "yield_stress": fluid.yield_stress,
+            "flow_index": fluid.flow_index,
+        },
     )
 
 

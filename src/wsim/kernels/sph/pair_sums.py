@@ -245,6 +245,17 @@ _MOMENTUM_AT_WALLS = (
     """,
 )
 
+_SHEAR = (
+    "const float v0 = v[0], v1 = v[1], v2 = v[2], eta2 = common[2]; float rate = 0.0f, filled = 0.0f;",
+    """
+            const float approach = (v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2;
+            const float slope = q.w * (t2 * t);
+            rate += slope * approach * approach / (r2 + eta2);
+            filled += slope * r2;
+    """,
+    "return wp::vec_t<2, float>(-slope_norm * rate, -slope_norm * filled);",
+)
+
 _FIND = """
     struct Record { float x, y, z, w; };
     const Record* __restrict__ points = reinterpret_cast<const Record*>(other.point.data);
@@ -288,6 +299,7 @@ class PairSums:
         force_in_gap: `Gap`, over walls or bodies. Takes the particle's pressure and the least that there is as v, the
             weight of the fluid as `common`.
         gradient: Sum of V grad W, over fluid.
+        shear: Sums of -V_j (v_ij.x_ij)^2 / r^2 dW/dr / r and of -V_j x_ij.grad W, over each kind.
         seeping: Sums of W and of W times pressure, and the fewest hops, over what its own body's particles hand on.
         find: Write the neighbours of one kind behind `start` others, but `itself`; returns how many there are then.
             For lists alone.
@@ -307,6 +319,7 @@ class PairSums:
     way: dict[int, wp.Function]
     force_in_gap: dict[int, wp.Function]
     gradient: wp.Function
+    shear: dict[int, wp.Function]
     seeping: wp.Function
     find: wp.Function
     several: bool
@@ -393,6 +406,7 @@ def make_pair_sums(
         way={kind: total(between(WAY, words), wp.vec3, kind) for kind, words in ACROSS.items()},
         force_in_gap={kind: total(between(GAP, words), Gap, kind) for kind, words in ACROSS.items()},
         gradient=total(GRADIENT, wp.vec3),
+        shear={kind: total(_SHEAR, wp.vec2, kind) for kind in (FLUID, WALLS, BODIES)},
         seeping=total(SEEPING, wp.vec3, BODIES),
         find=find,
         several=several,

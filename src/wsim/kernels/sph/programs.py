@@ -14,6 +14,7 @@ from wsim.kernels.sph.neighbors import Finders, make_finders
 from wsim.kernels.sph.pair_sums import make_pair_sums
 from wsim.kernels.sph.pipes import make_fill
 from wsim.kernels.sph.push import make_look_across, make_push
+from wsim.kernels.sph.yielding import make_yield
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,7 @@ class Programs:
     momentum: wp.Kernel
     look_across: wp.Kernel
     push: wp.Kernel
+    yields: wp.Kernel
 
     @staticmethod
     @functools.cache
@@ -59,4 +61,5 @@ class Programs:
             make_momentum(sums, solids),
             make_look_across(sums, solids),
             make_push(sums, solids),
+            make_yield(sums, solids),
         )
