@@ -53,8 +53,8 @@ def build_pour(cast: Cast, taken: set[str]) -> Part:
     if held is not None and held.volume is not None:
         if held.volume > 1.05 * amount or level is not None:
             raise UserError(
-                f"{cast.water!r}: {1000 * held.volume:g} litres of it are poured at once; up to {1000 * amount:.2g} stay "
-                f"in the {vessel.name}: say less, or pour it at a rate"
+                f"{cast.water!r}: {1000 * held.volume:g} litres of it are poured at once; up to {1000 * amount:.2g} "
+                f"stay in the {vessel.name}: say less, or pour it at a rate"
             )
         amount = held.volume
     spacing = math.ceil((amount / PARTICLES) ** (1 / 3) * 1000) / 1000
