@@ -134,7 +134,7 @@ def neighbors(solver: SolverSPH, state: Any) -> float:
     from scipy.spatial import cKDTree
 
     search = solver.search
-    places = (state.particle_q, solver.wall_position, solver.body_position)
+    places = (state.particle_q, solver.wall_position, solver.bodies.position)
     kinds = (search.fluid, search.walls, search.bodies)
     position = np.concatenate([x.numpy()[kind.world.numpy() == 0] for x, kind in zip(places, kinds, strict=True)])
     fluid = int((search.fluid.world.numpy() == 0).sum())

@@ -53,7 +53,7 @@ CASES: list[tuple[Callable[[Scene], object], str]] = [
     (lambda s: s.fluid("w", fills="tank", level=0.05, spacing=0.1), "must hold at least one particle"),
     (lambda s: s.fluid("w", fills="tank", level=0.5, spacing=0.001), "5e+08 particles"),
     (lambda s: s.fluid("w", fills="tank", spacing=0.1), "fills is given without level"),
-    (lambda s: s.fluid("w", fills="block", level=0.5, spacing=0.1), 'fills = "block" moves'),
+    (lambda s: s.fluid("w", fills="block", level=0.5, spacing=0.1), 'fills = "block" holds no fluid'),
     (lambda s: s.fluid("w", fills="tnk", level=0.5, spacing=0.1), 'did you mean "tank"?'),
     (lambda s: s.fluid("w", spacing=0.1), "give fills= and level="),
     (lambda s: s.fluid("w", size=UNIT, position=(0, 0, 9), spacing=NAN), "spacing = nan must be finite"),
@@ -176,6 +176,17 @@ def test_overlapping_fluids_are_refused(scene: Scene) -> None:
     with pytest.raises(SceneError, match='overlaps "w"'):
         scene.fluid("v", size=(0.5, 0.5, 0.5), position=(0, 0, 0.3), spacing=0.1)
     scene.fluid("above", size=(0.5, 0.5, 0.3), position=(0, 0, 0.67), spacing=0.1)
+
+
+def test_what_fills_a_tank_after_another_fluid_lies_on_it(scene: Scene) -> None:
+    water = scene.fluid("water", fills="tank", level=0.3, spacing=0.1)
+    with pytest.raises(SceneError, match=re.escape('level = 0.3 m is not above "water", which fills tank "tank"')):
+        scene.fluid("oil", fills="tank", level=0.3, spacing=0.1, density=900.0)
+    oil = scene.fluid("oil", fills="tank", level=0.5, spacing=0.1, density=900.0)
+    foam = scene.fluid("foam", fills="tank", volume=0.2 * oil.size[0] * oil.size[1], spacing=0.1, density=300.0)
+    assert oil.size[2] == pytest.approx(0.2)
+    assert oil.surface == pytest.approx(water.surface + 0.2)
+    assert foam.surface == pytest.approx(oil.surface + 0.2)
 
 
 def test_a_loop_without_a_plain_joint_is_refused() -> None:

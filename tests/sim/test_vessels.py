@@ -10,21 +10,22 @@ from tests.sim import vessel_shapes as shapes
 from wsim.scene import Scene
 from wsim.sim.simulation import Simulation
 
-G, DP = 9.81, 0.01
+G, DP = 9.81, 0.0125
 FRAMES = 20
+STILL = 14  # frames of what is at rest
 
 
 def still(scene: Scene, folder: Path) -> tuple[Simulation, np.ndarray, np.ndarray, float]:
-    """A second of it: the simulation, heights and pressures in the last half, and the force on what stands [N]."""
-    scene.simulation(duration=1.0, frame_rate=FRAMES)
+    """Some of it: the simulation, heights and pressures in the last half, and the force on what stands [N]."""
+    scene.simulation(duration=STILL / FRAMES, frame_rate=FRAMES)
     simulation = Simulation(scene.save(folder / "still.usda"), "cpu")
     heights, pressures = [], []
-    for frame in range(FRAMES):
+    for frame in range(STILL):
         simulation.advance_frame()
-        if frame == FRAMES // 2 - 1:
+        if frame == STILL // 2 - 1:
             simulation.fluid.take_wall_impulse()
             start = simulation.time
-        if frame >= FRAMES // 2:
+        if frame >= STILL // 2:
             heights.append(simulation.state.particle_q.numpy()[:, 2].copy())
             pressures.append(simulation.state.sph.pressure.numpy().copy())
     force = -float(simulation.fluid.take_wall_impulse()[0, 2]) / (simulation.time - start)
@@ -98,7 +99,7 @@ def test_a_thin_vessel_has_a_tap_and_a_drain(tmp_path: Path) -> None:
     shapes.cup(0.05, 0.12, 0.003).export(tmp_path / "vessel.stl")
     scene = Scene()
     vessel = scene.mesh("vessel", file=tmp_path / "vessel.stl", static=True)
-    water = scene.fluid("water", fills=vessel, level=0.06, spacing=DP)
+    water = scene.fluid("water", fills=vessel, level=0.06, spacing=0.01)
     scene.tap("tap", water, rate=2e-4, position=(0.0, 0.0, 0.11), radius=0.02)
     scene.drain("hole", water, position=(0.0, 0.0, 0.003), radius=0.02)
     scene.simulation(duration=0.4, frame_rate=FRAMES)

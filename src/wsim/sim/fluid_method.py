@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def method_of(built: Built, solver: SolverSPH, w: int) -> dict[str, Any]:
     """Settings of the SPH, and how many particles each body of world w has."""
     config = solver.config
-    counts = np.diff(solver.body_first.numpy())[_bodies(built, solver, w)].tolist()
+    counts = np.diff(solver.bodies.sampled.first)[_bodies(built, solver, w)].tolist()
     return {
         "smoothing_length": config.smoothing_length,
         "artificial_viscosity": config.artificial_viscosity,
@@ -30,7 +30,7 @@ def solids_of(built: Built, solver: SolverSPH, w: int) -> Solids:
     """Particles of all that the fluid of world w meets."""
     first, last = solver.search.walls.world_first[w : w + 2]
     walls = SolidParticles(solver.wall_position.numpy()[first:last], solver.wall_volume.numpy()[first:last])
-    place, volume, starts = (a.numpy() for a in (solver.body_local, solver.body_volume, solver.body_first))
+    place, volume, starts = (a.numpy() for a in (solver.bodies.local, solver.bodies.volume, solver.bodies.first))
     found = {}
     for body, k in zip(built.world.bodies, _bodies(built, solver, w), strict=True):
         part = slice(int(starts[k]), int(starts[k + 1]))
@@ -41,4 +41,4 @@ def solids_of(built: Built, solver: SolverSPH, w: int) -> Solids:
 
 def _bodies(built: Built, solver: SolverSPH, w: int) -> Any:
     """The solver's numbers of world w's bodies."""
-    return built.bodies + w * ((len(solver.body_first) - 1) // solver.world_count)
+    return built.bodies + w * ((len(solver.bodies.first) - 1) // solver.world_count)

@@ -14,14 +14,12 @@ from wsim.errors import UserError
 from wsim.geometry.filled import box_lattice
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.geometry.shapes import into, kind_of, reach
-from wsim.scene.hollows import hollow_of, surface_of_wall
-from wsim.scene.world import Fluid, Quat, Shape, Vec3, World
-from wsim.sim.filling import spread
+from wsim.scene.world import Fluid, Shape, World
 from wsim.sim.openings import fastest_poured, waiting
+from wsim.sim.vessels import carried_speed, places_in
 from wsim.solvers.inside import depth_in, is_open, solid_of
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.sph_config import ConfigSPH
-from wsim.solvers.vessels import Vessel
 
 SOUND_OVER_SPEED = 10.0  # keeps the density within 1 % (Monaghan 1994)
 
@@ -32,7 +30,7 @@ Depth = Callable[[Array], Array]
 @dataclass(frozen=True)
 class Seeded:
     """The particles of one fluid, n of them: positions [m] and velocities [m/s] (n, 3), masses [kg], pressures [Pa] and
-    `ParticleFlags`.
+    `ParticleFlags`; and what all of them are of, by the solver's names.
 
     Those that wait for taps follow the others; they are not `ParticleFlags.ACTIVE`.
     """
@@ -43,6 +41,7 @@ class Seeded:
     mass: Array
     pressure: Array
     flags: Array
+    liquid: dict[str, float]
 
 
 def containers_of(world: World, k: int = -1) -> list[OpenBox]:
@@ -54,47 +53,30 @@ def containers_of(world: World, k: int = -1) -> list[OpenBox]:
     ]
 
 
-def vessels_of(world: World, k: int = -1) -> list[Vessel]:
-    """What fluid fills beside tanks in world k, or in all, with the labels of the shapes that each stands for."""
-    found = {}
-    for fluid in world.fluids:
-        if fluid.volume is not None and fluid.container not in found:
-            shapes, _, turn = _held_by(fluid, world)
-            walls = [shape for shape in shapes if shape.collides and shape.kind != "plane"]
-            found[fluid.container] = Vessel(
-                surfaces=tuple(surface_of_wall(shape) for shape in walls),
-                upright=turn,
-                shapes=frozenset(shape.prim for shape in walls),
-                body=fluid.container if any(body.prim == fluid.container for body in world.bodies) else None,
-                world=k,
-            )
-    return list(found.values())
-
-
-def _held_by(fluid: Fluid, world: World) -> tuple[list[Shape], Vec3, Quat]:
-    """The shapes of what holds a fluid, and the pose of their frame."""
-    for body in world.bodies:
-        if body.prim == fluid.container:
-            return body.shapes, body.position, body.rotation
-    shapes = next((static.shapes for static in world.statics if static.prim == fluid.container), [])
-    return shapes, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
-
-
-def common_fluid(world: World) -> Fluid:
-    """The fluid whose density, viscosity and spacing all fluids of the world share.
+def heaviest(world: World) -> Fluid:
+    """The densest fluid, the first of them: it lies where water seeps to, and a world with one liquid is all of it.
 
     Raises:
-        UserError: If two fluids differ: the solver has one rest density, viscosity and spacing.
+        UserError: If two fluids have different spacings: the solver has one.
     """
     first = world.fluids[0]
     for other in world.fluids[1:]:
-        for name in ("density", "viscosity", "spacing"):
-            if not math.isclose(getattr(first, name), getattr(other, name)):
-                raise UserError(
-                    f"{other.prim}: {name} = {getattr(other, name)} differs from the {getattr(first, name)} of "
-                    f"{first.prim}; all fluids of a world must share it"
-                )
-    return first
+        if not math.isclose(first.spacing, other.spacing):
+            raise UserError(
+                f"{other.prim}: spacing = {other.spacing} differs from the {first.spacing} of {first.prim}; all fluids "
+                "of a world must share it"
+            )
+    return max(world.fluids, key=lambda fluid: fluid.density)
+
+
+def several_liquids(worlds: Sequence[World]) -> bool:
+    """Whether two fluids of a world differ, so that each particle needs its own numbers."""
+    return any(
+        not math.isclose(getattr(world.fluids[0], name), getattr(other, name))
+        for world in worlds
+        for other in world.fluids[1:]
+        for name in ("density", "viscosity")
+    )
 
 
 def sph_config(worlds: Sequence[World]) -> ConfigSPH | None:
@@ -105,10 +87,10 @@ def sph_config(worlds: Sequence[World]) -> ConfigSPH | None:
     """
     if not worlds[0].fluids:
         return None
-    fluids = [common_fluid(world) for world in worlds]
+    fluids = [heaviest(world) for world in worlds]
     sound = [
-        fluid.speed_of_sound or SOUND_OVER_SPEED * expected_speed(world)
-        for fluid, world in zip(fluids, worlds, strict=True)
+        max(fluid.speed_of_sound for fluid in world.fluids) or SOUND_OVER_SPEED * expected_speed(world)
+        for world in worlds
     ]
     return ConfigSPH(
         spacing=fluids[0].spacing,
@@ -121,14 +103,15 @@ def sph_config(worlds: Sequence[World]) -> ConfigSPH | None:
 
 def of_worlds(worlds: Sequence[World]) -> dict[str, list[float]]:
     """What the solver has of each world by itself, as `SolverSPH.register_custom_attributes` names it."""
-    fluids = [common_fluid(world) for world in worlds]
+    fluids = [heaviest(world) for world in worlds]
     return {"rest_density": [fluid.density for fluid in fluids], "viscosity": [fluid.viscosity for fluid in fluids]}
 
 
 def largest_step(world: World, config: ConfigSPH) -> float:
-    """The longest step that a world's fluid can take under common settings [s]."""
-    fluid = common_fluid(world)
-    return replace(config, rest_density=fluid.density, viscosity=fluid.viscosity).max_time_step
+    """The longest step that a world's fluids can take under common settings [s]."""
+    return min(
+        replace(config, rest_density=fluid.density, viscosity=fluid.viscosity).max_time_step for fluid in world.fluids
+    )
 
 
 def expected_speed(world: World) -> float:
@@ -140,7 +123,7 @@ def expected_speed(world: World) -> float:
         # a column in one falls by its height, a free one to the lowest that there is.
         falls = 2.0 * (fluid.size[2] if fluid.container else max(_over_all(fluid, world), fluid.size[2]))
         wave = math.sqrt((fluid.size[2] if _fills(fluid, world) else falls) * g)
-        speeds.append(math.hypot(*fluid.velocity, wave))
+        speeds += [math.hypot(*fluid.velocity, wave), carried_speed(fluid, world)]
     for body in world.bodies:
         bottom = body.position[2] - 0.5 * min((kind_of(shape).thinnest for shape in body.shapes), default=0.0)
         drop = max((bottom - (f.center[2] + 0.5 * f.size[2]) for f in world.fluids), default=0.0)
@@ -194,7 +177,7 @@ def seed(fluid: Fluid, world: World, config: ConfigSPH, meshes: dict[str, list[D
     """Particles of a fluid: of its box, and those that wait for its taps.
 
     The mass of each is the fluid's density times its cell, so that the fluid's mass is right whatever the spacing.
-    The pressure is hydrostatic.
+    The pressure is hydrostatic, under what stands on it too.
 
     Args:
         fluid: The box, or what fills a vessel; a box of no height holds nothing yet.
@@ -207,7 +190,8 @@ def seed(fluid: Fluid, world: World, config: ConfigSPH, meshes: dict[str, list[D
     """
     position = _standing(fluid, world, meshes) if fluid.size[2] > 0.0 else np.zeros((0, 3))
     depth = 0.5 * fluid.size[2] + fluid.center[2] - position[:, 2]
-    pressure = fluid.density * abs(world.gravity[2]) * np.maximum(depth, 0.0)
+    over = sum(_over(fluid, other, position) for other in world.fluids if other is not fluid)
+    pressure = abs(world.gravity[2]) * (fluid.density * np.maximum(depth, 0.0) + over)
     there, count = len(position), waiting(fluid, world, config, fluid.cell)
     return Seeded(
         prim=fluid.prim,
@@ -216,12 +200,21 @@ def seed(fluid: Fluid, world: World, config: ConfigSPH, meshes: dict[str, list[D
         mass=np.full(there + count, fluid.density * fluid.cell),
         pressure=np.append(pressure, np.zeros(count)),
         flags=np.repeat(np.array([int(ParticleFlags.ACTIVE), 0], dtype=np.int32), [there, count]),
+        liquid={"liquid_density": fluid.density, "liquid_viscosity": fluid.viscosity},
     )
+
+
+def _over(fluid: Fluid, other: Fluid, position: Array) -> Array:
+    """Mass over each place of a fluid of another that stands on it in the same container, per area (n,) [kg/m^2]."""
+    if other.container != fluid.container or other.center[2] < fluid.center[2]:
+        return np.zeros(len(position))
+    off = np.abs(position[:, :2] - np.array(other.center[:2])) <= 0.5 * np.array(other.size[:2])
+    return np.where(off.all(axis=1), other.density * other.size[2], 0.0)
 
 
 def _standing(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Array:
     """Where particles of a fluid are: not where a solid already is, (n, 3) [m]."""
-    position = _in_vessel(fluid, world) if fluid.volume is not None else _in_box(fluid, world)
+    position = places_in(fluid, world) if fluid.volume is not None else _in_box(fluid, world)
     free = np.ones(len(position), dtype=bool)
     margin, around = 0.4 * fluid.spacing, {container.prim for container in world.containers}
     if fluid.volume is not None:
@@ -245,21 +238,17 @@ def _in_box(fluid: Fluid, world: World) -> Array:
     return rotate(np.array(rotation), cells.position) + np.array(fluid.center)
 
 
-def _in_vessel(fluid: Fluid, world: World) -> Array:
-    """Places in the hollow of the fluid's vessel (n, 3) [m]."""
-    try:
-        hollow = hollow_of(*_held_by(fluid, world), fluid.spacing)
-    except ValueError as error:
-        raise UserError(f"{fluid.prim}: {fluid.container} holds no fluid: {error}; name a vessel") from error
-    return spread(hollow.filling(fluid.center[2] + 0.5 * fluid.size[2]), fluid.spacing, fluid.particles)
+@dataclass(frozen=True)
+class Filled:
+    """What `add_seeded` has put in: of each world the range of each fluid's particles there, by prim; and numbers of
+    all particles (n,), by the solver's names."""
+
+    ranges: list[dict[str, slice]]
+    numbers: dict[str, Array]
 
 
-def add_seeded(builder: Any, worlds: Sequence[World], config: ConfigSPH) -> tuple[list[dict[str, slice]], Array]:
-    """Fill the worlds of a builder that has no particles with fluid, as arrays.
-
-    Returns:
-        The range of each fluid's particles in its own world, by prim; and the pressures of all particles [Pa], (n,).
-    """
+def add_seeded(builder: Any, worlds: Sequence[World], config: ConfigSPH) -> Filled:
+    """Fill the worlds of a builder that has no particles with fluid, as arrays."""
     parts, ranges = [], []
     for world in worlds:
         seeded = [seed(fluid, world, config, {}) for fluid in world.fluids]
@@ -271,10 +260,16 @@ def add_seeded(builder: Any, worlds: Sequence[World], config: ConfigSPH) -> tupl
     builder.particle_qd = np.concatenate([part.velocity for part in parts]).astype(np.float32)
     builder.particle_mass = np.concatenate([part.mass for part in parts]).astype(np.float32)
     radii = [0.5 * fluid.spacing for world in worlds for fluid in world.fluids]
-    builder.particle_radius = np.repeat(np.array(radii, dtype=np.float32), [len(part.mass) for part in parts])
+    lengths = [len(part.mass) for part in parts]
+    builder.particle_radius = np.repeat(np.array(radii, dtype=np.float32), lengths)
     builder.particle_flags = np.concatenate([part.flags for part in parts])
     builder.particle_world = np.repeat(np.arange(len(worlds), dtype=np.int32), counts)
-    return ranges, np.concatenate([part.pressure for part in parts]).astype(np.float32)
+    numbers = {"pressure": np.concatenate([part.pressure for part in parts]).astype(np.float32)}
+    if several_liquids(worlds):
+        for name in parts[0].liquid:
+            own = np.array([part.liquid[name] for part in parts], dtype=np.float32)
+            numbers[name] = np.repeat(own, lengths)
+    return Filled(ranges, numbers)
 
 
 def _inside(shapes: list[Shape], points: Array, margin: float, meshes: list[Depth]) -> Array:

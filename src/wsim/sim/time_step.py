@@ -129,12 +129,16 @@ def driven_inertia(world: World, joint: Joint) -> float:
 
 
 def _crossing_time(world: World) -> float | None:
-    """Time that the fastest body takes to cross the thinnest shape [s], from its start and its fall."""
+    """Time that the fastest body takes to cross the thinnest shape [s], from its start and its fall.
+
+    None where all bodies are led: they do not fall, and meet nothing that would be pushed.
+    """
     extents = [thickness(body) for body in world.bodies]
-    if not extents:
+    free = [body.position[2] for body in world.bodies if not body.kinematic]
+    if not free:
         return None
     g = float(np.linalg.norm(world.gravity))
-    fall = max(max(body.position[2] for body in world.bodies) - min(0.0, *(b.position[2] for b in world.bodies)), 0.0)
+    fall = max(max(free) - min(0.0, *(body.position[2] for body in world.bodies)), 0.0)
     start = max(_fastest(body) for body in world.bodies)
     return min(extents) / max(math.sqrt(start**2 + 2.0 * g * fall), 1e-3)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import warnings
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,11 +12,12 @@ from newton import GeoType, ShapeFlags
 from scipy.spatial import cKDTree
 
 from wsim.geometry.filled import Samples, box_lattice, capsule_layers, cylinder_layers, sphere_layers
-from wsim.geometry.rotations import rotate
+from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.solvers.layers import mesh_layers
+from wsim.solvers.plane_sections import fill_section
 from wsim.solvers.sampling import container_walls
 from wsim.solvers.sph_config import ConfigSPH
-from wsim.solvers.vessels import Vessel
+from wsim.solvers.vessel_walls import VesselWalls
 
 Array = np.ndarray
 
@@ -73,7 +73,7 @@ class Boundary:
         return most
 
 
-def sample_shape(kind: int, scale: Array, source: Any, spacing: float, plane: bool = False) -> Samples | None:
+def sample_shape(kind: int, scale: Array, source: Any, spacing: float) -> Samples | None:
     """Fill one Newton shape with particles in its own frame; None for kinds that have no inside.
 
     Args:
@@ -81,15 +81,9 @@ def sample_shape(kind: int, scale: Array, source: Any, spacing: float, plane: bo
         scale: Newton's shape scale: half extents of a box [m], radius and half height of a cylinder [m], …
         source: The `newton.Mesh` of a mesh.
         spacing: Particle spacing [m].
-        plane: One layer at y = 0, for a flow in the x-z plane.
-
-    Raises:
-        ValueError: If a shape other than a box is met in a plane.
     """
     if kind == GeoType.BOX:
-        return box_lattice(2.0 * scale, spacing, plane)
-    if plane:
-        raise ValueError(f"SolverSPH: a {GeoType(kind).name} in a flow of 2 dimensions; only boxes stand in a plane")
+        return box_lattice(2.0 * scale, spacing)
     if kind == GeoType.SPHERE:
         return sphere_layers(float(scale[0]), spacing)
     if kind == GeoType.CYLINDER:
@@ -103,45 +97,43 @@ def sample_shape(kind: int, scale: Array, source: Any, spacing: float, plane: bo
     return None
 
 
-def sample_bodies(model: Any, config: ConfigSPH, vessels: Sequence[Vessel] = ()) -> Boundary:
+def sample_bodies(model: Any, config: ConfigSPH, vessels: VesselWalls) -> Boundary:
     """Sample every colliding shape of a model's bodies, and the walls of those that are vessels.
+
+    In a plane it is what y = 0 cuts out of them as the model has them at its start.
 
     Args:
         model: The `newton.Model`.
         config: For the spacing and the dimensions.
-        vessels: What holds fluid beside tanks; the shapes of one are its walls.
+        vessels: The walls of vessels, which the shapes of those stand for.
     """
     bodies, poses, kinds = model.shape_body.numpy(), model.shape_transform.numpy(), model.shape_type.numpy()
     scales, flags = model.shape_scale.numpy(), model.shape_flags.numpy()
-    walls = frozenset().union(*(vessel.shapes for vessel in vessels))
-    moving: list[list[tuple[Array, Array]]] = [[] for _ in range(model.body_count)]
+    starts = model.body_q.numpy().astype(float) if model.body_count else np.zeros((0, 7))
+    worlds = np.maximum(model.body_world.numpy(), 0) if model.body_count else np.zeros(0, int)
+    moving = [vessels.of(world, body) for body, world in enumerate(worlds.tolist())]
     for shape in range(model.shape_count):
-        if bodies[shape] < 0 or not flags[shape] & ShapeFlags.COLLIDE_SHAPES or model.shape_label[shape] in walls:
+        body, label = int(bodies[shape]), model.shape_label[shape]
+        if body < 0 or not flags[shape] & ShapeFlags.COLLIDE_SHAPES or vessels.made_of(label):
             continue
-        kind, source = int(kinds[shape]), model.shape_source[shape]
-        found = sample_shape(kind, scales[shape], source, config.spacing, config.dimensions == 2)
+        form = int(kinds[shape]), poses[shape].astype(float), scales[shape].astype(float), model.shape_source[shape]
+        found = _of_body(*form, starts[body], config)
         if found is None:
-            name = GeoType(kind).name
-            warnings.warn(f"SolverSPH: the fluid does not see {model.shape_label[shape]}, a {name}", stacklevel=3)
+            name = GeoType(form[0]).name
+            warnings.warn(f"SolverSPH: the fluid does not see {label}, a {name}", stacklevel=3)
             continue
-        position = rotate(poses[shape][3:], found.position) + poses[shape][:3]
-        moving[bodies[shape]].append((position, found.volume))
-    _add_vessels(model, config.spacing, vessels, moving)
-    return _join(moving, model.body_world.numpy() if model.body_count else np.zeros(0, int))
+        moving[body].append(vessels.beside(found, int(worlds[body]), body, starts[body]))
+    return _join(moving, worlds)
 
 
-def _add_vessels(
-    model: Any, spacing: float, vessels: Sequence[Vessel], moving: list[list[tuple[Array, Array]]]
-) -> None:
-    """Add the walls of vessels that are bodies to those of their bodies."""
-    labels, worlds = [str(label) for label in model.body_label], model.body_world.numpy()
-    for vessel in vessels:
-        if vessel.body is None:
-            continue
-        found = vessel.walls(spacing)
-        for body, label in enumerate(labels):
-            if label == vessel.body and vessel.world in (-1, int(worlds[body])):
-                moving[body].append((found.position, found.volume))
+def _of_body(kind: int, pose: Array, scale: Array, source: Any, body: Array, config: ConfigSPH) -> Samples | None:
+    """Particles of a body's shape, or in a plane of its section, in the body's frame; poses (7,) of both."""
+    if config.dimensions == 2:
+        stands = np.concatenate([rotate(body[3:], pose[:3]) + body[:3], multiply(body[3:], pose[3:])])
+        found = fill_section(kind, stands, scale, source, config.spacing)
+        return found and Samples(rotate(conjugate(body[3:]), found.position - body[:3]), found.volume)
+    found = sample_shape(kind, scale, source, config.spacing)
+    return found and Samples(rotate(pose[3:], found.position) + pose[:3], found.volume)
 
 
 def sample_container(box: OpenBox, config: ConfigSPH) -> tuple[Array, Array]:
@@ -160,15 +152,15 @@ def sample_container(box: OpenBox, config: ConfigSPH) -> tuple[Array, Array]:
     return rotate(np.array(box.rotation), samples.position) + np.array(box.center), samples.volume
 
 
-def _join(moving: list, body_world: Array) -> Boundary:
+def _join(moving: list[list[Samples]], body_world: Array) -> Boundary:
     """The particles of each body after those of the one before."""
-    pieces = [(p, v, body) for body, own in enumerate(moving) for p, v in own]
-    sizes = [len(p) for p, _, _ in pieces]
-    owner = np.repeat([body for _, _, body in pieces], sizes).astype(np.int32)
+    pieces = [samples for own in moving for samples in own]
+    sizes = [sum(len(samples.volume) for samples in own) for own in moving]
+    owner = np.repeat(np.arange(len(moving)), sizes).astype(np.int32)
     return Boundary(
-        local=np.concatenate([p for p, _, _ in pieces]) if pieces else np.zeros((0, 3)),
-        volume=np.concatenate([v for _, v, _ in pieces]) if pieces else np.zeros(0),
+        local=np.concatenate([p.position for p in pieces]) if pieces else np.zeros((0, 3)),
+        volume=np.concatenate([p.volume for p in pieces]) if pieces else np.zeros(0),
         owner=owner,
-        world=np.maximum(body_world[owner], 0).astype(np.int32),
+        world=body_world[owner].astype(np.int32),
         first=np.searchsorted(owner, np.arange(len(moving) + 1)).astype(np.int32),
     )

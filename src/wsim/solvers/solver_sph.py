@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -11,15 +10,16 @@ import numpy as np
 import warp as wp
 from newton.solvers import SolverBase
 
-from wsim.kernels.sph import boundary as boundary_kernels
 from wsim.kernels.sph import density as density_kernels
 from wsim.kernels.sph import grid as grid_kernels
 from wsim.solvers.launch import launch_shared
 from wsim.solvers.shapes import OpenBox, sample_bodies
+from wsim.solvers.sph_bodies import BodyParticles
 from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.sph_domain import domain_of
 from wsim.solvers.sph_faces import FixedFaces
 from wsim.solvers.sph_faults import in_words, inspected
+from wsim.solvers.sph_liquids import Liquids, has_liquids, register_liquids
 from wsim.solvers.sph_mouths import Drain, Tap
 from wsim.solvers.sph_openings import ROOM, Openings
 from wsim.solvers.sph_particles import SortedParticles
@@ -27,7 +27,8 @@ from wsim.solvers.sph_push import BodyPush
 from wsim.solvers.sph_search import ParticleSearch
 from wsim.solvers.sph_skins import Skins
 from wsim.solvers.sph_solids import FixedSolids
-from wsim.solvers.sph_wall_impulse import LEAST_LANES, WallImpulse
+from wsim.solvers.sph_wall_impulse import WallImpulse
+from wsim.solvers.vessel_walls import VesselWalls
 from wsim.solvers.vessels import Vessel
 
 
@@ -58,20 +59,23 @@ class SolverSPH(SolverBase):
 
     Attributes:
         openings: The taps and drains; None without any.
+        body_wrench: Of the fluid on each body in the last step: force [N], torque about its centre of mass [N m].
+        liquids: What each particle is of, where worlds have several liquids; else None.
 
     Raises:
-        ValueError: If the model has no particles, the settings are out of range, a container is too narrow, or too few
-            particles wait for the taps.
+        ValueError: If the model has no particles, the settings are out of range, a container is too narrow, too few
+            particles wait for the taps, or there are vessels in a plane.
     """
 
     Config = ConfigSPH
 
     @classmethod
-    def register_custom_attributes(cls, builder: newton.ModelBuilder) -> None:
+    def register_custom_attributes(cls, builder: newton.ModelBuilder, several_liquids: bool = False) -> None:
         """Register what the solver reads beside Newton's own particle arrays.
 
         `sph:pressure` [Pa] is a state variable of each particle, p = c^2 (rho - rho_0). `sph:rest_density` [kg/m^3]
-        and `sph:viscosity` [Pa s] belong to a world; 0 takes the `Config`'s.
+        and `sph:viscosity` [Pa s] belong to a world; 0 takes the `Config`'s. With `several_liquids` each particle has
+        `sph:liquid_density` and `sph:liquid_viscosity`, too; where its density is 0 it is of the world's.
         """
         frequency, assignment = newton.Model.AttributeFrequency, newton.Model.AttributeAssignment
         for name, of, where in (
@@ -84,6 +88,8 @@ class SolverSPH(SolverBase):
                     name=name, frequency=of, assignment=where, dtype=wp.float32, default=0.0, namespace="sph"
                 )
             )
+        if several_liquids:
+            register_liquids(builder)
 
     def __init__(
         self,
@@ -105,9 +111,12 @@ class SolverSPH(SolverBase):
         self.config = config
         self.fluid_count = model.particle_count
         self.world_count = max(1, model.world_count)
+        if vessels and config.dimensions == 2:
+            raise ValueError("SolverSPH: vessels in a flow of 2 dimensions; there a cup is shapes, or a tank")
         with wp.ScopedDevice(model.device):
             self._read_worlds()
-            world = np.maximum(model.particle_world.numpy(), 0)
+            world = self._fluid_world = np.maximum(model.particle_world.numpy(), 0)
+            self._read_liquids()
             self.openings = (
                 Openings(model, config, world, self.rest_density.numpy(), taps, drains) if taps or drains else None
             )
@@ -140,33 +149,39 @@ class SolverSPH(SolverBase):
                 values = np.where(given > 0.0, given, values)
             setattr(self, name, wp.array(values, dtype=float))
 
+    def _read_liquids(self) -> None:
+        """What each particle is of, where a world has several liquids."""
+        worlds = self.rest_density.numpy(), self.viscosity.numpy()
+        self.liquids = Liquids(self.model, self._fluid_world, *worlds) if has_liquids(self.model) else None
+
+    def at_rest(self, world: int) -> np.ndarray:
+        """Density at rest [kg/m^3]: a world's, (), or where it has several liquids that of each particle, (n,)."""
+        return self.liquids.density if self.liquids else np.asarray(self.rest_density.numpy()[world])
+
     def notify_model_changed(self, flags: newton.ModelFlags | int) -> None:
-        """Read the worlds' densities and viscosities again; gravity and masses are read in every step."""
+        """Read the liquids' densities and viscosities again; gravity and masses are read in every step."""
         if flags & newton.ModelFlags.MODEL_PROPERTIES:
             with wp.ScopedDevice(self.model.device):
                 self._read_worlds()
+                self._read_liquids()
 
     def _sample_solids(self, containers: tuple[OpenBox, ...], vessels: Sequence[Vessel], world: np.ndarray) -> None:
         """Fill the solids with particles: bodies, and what stands still where the fluid is or comes to."""
         model = self.model
-        self._fluid_world = world
         place, home = model.particle_q.numpy(), world
         if self.openings:
             place, home = self.openings.known(place, world)
-        self.fixed = FixedSolids(model, self.config, containers, vessels)
+        self.vessels = VesselWalls(model, vessels, self.config.spacing)
+        self.fixed = FixedSolids(model, self.config, containers, self.vessels)
         self.fixed.start(place, home)
-        self.bodies = sample_bodies(model, self.config, vessels)
-        self.body_particle_count = len(self.bodies.local)
-        self.body_local = wp.array(self.bodies.local, dtype=wp.vec3)
-        self.body_volume = wp.array(self.bodies.volume, dtype=float)
-        self.body_owner = wp.array(self.bodies.owner, dtype=int)
-        self.body_first = wp.array(self.bodies.first, dtype=int)
-        self.domain = domain_of(place, containers)
+        self.bodies = BodyParticles(model, sample_bodies(model, self.config, self.vessels))
+        self.body_wrench = self.bodies.wrench
+        self.domain = domain_of(place, containers, vessels)
         if self.openings:
             self.domain = self.domain[0], self.domain[1] + ROOM * self.config.support
-        own = frozenset().union(*(vessel.shapes for vessel in vessels))
-        self.faces = FixedFaces(model, self.world_count, containers, self.config.support, own)
-        self.skins = Skins(model, self.world_count, self.config.spacing, own)
+        plane = self.config.dimensions == 2
+        self.faces = FixedFaces(model, self.world_count, containers, self.config.support, self.vessels.made_of, plane)
+        self.skins = Skins(model, self.world_count, self.config.spacing, vessels)
         self._bring_into_order()
 
     def _bring_into_order(self) -> None:
@@ -177,7 +192,7 @@ class SolverSPH(SolverBase):
             position, volume, world = position[keep], volume[keep], world[keep]
             self.openings.park_below(self.domain[0])
         self.wall_count = len(position)
-        self.boundary_count = self.wall_count + self.body_particle_count
+        self.boundary_count = self.wall_count + self.bodies.count
         self.count = self.fluid_count + self.boundary_count
         self.wall_position, self.wall_volume = wp.array(position, dtype=wp.vec3), wp.array(volume, dtype=float)
         self.search = ParticleSearch(
@@ -185,11 +200,12 @@ class SolverSPH(SolverBase):
             self.domain,
             self._fluid_world,
             world,
-            self.bodies.world,
+            self.bodies.sampled.world,
             self.wall_position,
             self.world_count,
-            self.bodies.crowd((1.0 + self.config.skin) * self.config.support),
+            self.bodies.sampled.crowd((1.0 + self.config.skin) * self.config.support),
             self.openings.stage if self.openings else None,
+            self.liquids is not None,
         )
         self.programs = self.search.programs
         still = wp.zeros(self.wall_count, dtype=wp.vec3)
@@ -197,17 +213,9 @@ class SolverSPH(SolverBase):
         self._on_walls = wp.zeros(self.fluid_count if self.wall_count or self.faces.count else 0, dtype=wp.vec3)
 
     def _allocate(self) -> None:
-        bodies = self.body_particle_count
         self.pressure = wp.empty(self.fluid_count, dtype=float)
         self.full = wp.zeros(self.fluid_count, dtype=float)
-        self.body_position = wp.zeros(bodies, dtype=wp.vec3)
-        self.body_velocity = wp.zeros(bodies, dtype=wp.vec3)
-        self.push = BodyPush(self.search, self.body_owner)
-        # As many lanes as each has particles of the largest body to add up, and add_body_wrench lanes.
-        largest = int(np.diff(self.body_first.numpy()).max(initial=0))
-        self.lanes = max(LEAST_LANES, math.isqrt(largest))
-        self.lane_wrench = wp.zeros((self.model.body_count, self.lanes), dtype=wp.spatial_vector)
-        self.body_wrench = wp.zeros(self.model.body_count, dtype=wp.spatial_vector)
+        self.push = BodyPush(self.search, self.bodies.owner, self.vessels.bodies)
         self._wall_impulse = WallImpulse(self.search.fluid.world_first)
 
     def follow(self, state: newton.State, seconds: float) -> bool:
@@ -279,11 +287,11 @@ class SolverSPH(SolverBase):
 
     def bodies_outside(self, state: newton.State) -> list[int]:
         """Bodies whose origin is beside or below the domain, which spans the fluid's start and its tanks."""
-        if not self.body_particle_count:
+        if not self.bodies.count:
             return []
         low, high = self.domain
         place = state.body_q.numpy()[:, :3]
-        sampled = np.diff(self.body_first.numpy()) > 0
+        sampled = np.diff(self.bodies.sampled.first) > 0
         beside = ((place < low) | (place > high))[:, :2].any(axis=1)
         return np.flatnonzero(sampled & (beside | (place[:, 2] < low[2]))).tolist()
 
@@ -306,27 +314,12 @@ class SolverSPH(SolverBase):
             dt: Time step [s]; no larger than `config.max_time_step`.
         """
         with wp.ScopedDevice(self.model.device):
-            self._move_bodies(state_in)
-            self.search.update(state_in.particle_q, self.body_position, lambda: self._gather(state_in))
+            self.bodies.move(self.search.grid, state_in)
+            self.search.update(state_in.particle_q, self.bodies.position, lambda: self._gather(state_in))
             self._update_pressure(state_out, dt)
             self._move_fluid(state_in, state_out, dt)
-            self._return_wrenches(state_in, state_out, dt)
-
-    def _move_bodies(self, state: newton.State) -> None:
-        if self.body_particle_count:
-            wp.launch(
-                boundary_kernels.move_bodies,
-                dim=self.body_particle_count,
-                inputs=[
-                    self.search.grid,
-                    self.body_local,
-                    self.body_owner,
-                    state.body_q,
-                    state.body_qd,
-                    self.model.body_com,
-                ],
-                outputs=[self.body_position, self.body_velocity],
-            )
+            self.bodies.push(self.search.grid, self.push.force, state_in.body_q, state_out.body_f)
+            self.skins.give_back(dt, self.body_wrench, state_out.body_f)
 
     def _gather(self, state: newton.State) -> None:
         """Copy what the sums need into sorted order; walls stay as they are."""
@@ -347,7 +340,9 @@ class SolverSPH(SolverBase):
             ],
             outputs=[fluid.point, fluid.motion, fluid.full],
         )
-        self._gather_solid(self.search.bodies, self.body_position, self.body_velocity, self.body_volume)
+        if self.liquids:
+            self.liquids.gather(fluid, self.model.particle_mass, self.config.speed_of_sound)
+        self._gather_solid(self.search.bodies, self.bodies.position, self.bodies.velocity, self.bodies.volume)
         self.push.gather()
 
     def _gather_solid(self, solid: SortedParticles, *arrays: wp.array) -> None:
@@ -388,7 +383,7 @@ class SolverSPH(SolverBase):
                 self.programs.extrapolate,
                 dim=solid.count,
                 inputs=[*method, self.viscosity, gravity, fluid, solid.species],
-                outputs=[solid.motion, solid.facing],
+                outputs=[solid.motion, solid.facing, solid.liquid],
             )
 
     def _move_fluid(self, state_in: newton.State, state_out: newton.State, dt: float) -> None:
@@ -403,40 +398,16 @@ class SolverSPH(SolverBase):
             inputs=[*method, self.model.gravity, fluid, walls, bodies, self.model.particle_mass, dt],
             outputs=[state_out.particle_q, state_out.particle_qd, self._on_walls],
         )
-        worlds, solid = search.fluid.world, self.config.dimensions == 3
+        worlds = search.fluid.world
         if self.openings:
             self.openings.take_in(worlds, state_out.particle_q)
-        if len(self._on_walls) and self.faces.count and solid:
+        if len(self._on_walls) and self.faces.count:
             self.faces.keep_out(worlds, dt, state_out.particle_q, state_out.particle_qd, self._on_walls)
-        if self.skins.count and solid:
+        if self.skins.count:
             self.skins.keep_out(search.fluid, dt, state_out, state_in, self._on_walls)
         if self.openings:
             self.openings.lead(search.fluid, state_out, self._on_walls, dt)
         if len(self._on_walls):
             self._wall_impulse.add(self._on_walls, dt)
-            if self.body_particle_count:
+            if self.bodies.count:
                 self._wall_impulse.add(self.push.on_walls, dt, self.push.world_first)
-
-    def _return_wrenches(self, state_in: newton.State, state_out: newton.State, dt: float) -> None:
-        if not self.body_particle_count:
-            return
-        wp.launch(
-            boundary_kernels.sum_body_lanes,
-            dim=(self.model.body_count, self.lanes),
-            inputs=[
-                self.search.grid,
-                self.body_first,
-                self.push.force,
-                self.body_local,
-                state_in.body_q,
-                self.model.body_com,
-            ],
-            outputs=[self.lane_wrench],
-        )
-        wp.launch(
-            boundary_kernels.add_body_wrench,
-            dim=self.model.body_count,
-            inputs=[self.lane_wrench],
-            outputs=[self.body_wrench, state_out.body_f],
-        )
-        self.skins.give_back(dt, self.body_wrench, state_out.body_f)

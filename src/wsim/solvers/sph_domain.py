@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import warp as wp
 from wsim.kernels.sph.grid import Grid
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.sph_config import ConfigSPH
+from wsim.solvers.vessels import Vessel
 
 Array = np.ndarray
 MAX_CELLS = 2**30
@@ -18,17 +20,21 @@ REACH = {True: 2, False: 1}  # cells that a support spans across a row, on a CUD
 ALONG = 4  # times as many along it: at a reach of 2 a fifth fewer candidates
 
 
-def domain_of(fluid: Array, containers: tuple[OpenBox, ...]) -> tuple[Array, Array]:
+def domain_of(fluid: Array, containers: Sequence[OpenBox], vessels: Sequence[Vessel]) -> tuple[Array, Array]:
     """Lower and upper corner [m] of the fluid and its tanks; a free fluid gets as much room again on each side.
 
     Args:
         fluid: Positions [m], shape (n, 3).
         containers: Tanks of all worlds.
+        vessels: What else holds it; with the room that they move in.
     """
     low, high = fluid.min(axis=0), fluid.max(axis=0)
     if not containers:
         room = np.full(3, float((high - low).max()))
-        return low - room, high + room
+        low, high = low - room, high + room
+    for vessel in vessels:
+        if vessel.goes is not None:
+            low, high = np.minimum(low, vessel.goes[0]), np.maximum(high, vessel.goes[1])
     for box in containers:
         diagonal = np.full(3, float(np.linalg.norm(box.size)))
         half = 0.5 * (np.array(box.size) if box.rotation[3] == 1.0 else diagonal)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import warp as wp
 
 from wsim.kernels.sph import push as push_kernels
@@ -18,6 +19,7 @@ class BodyPush:
     Args:
         search: Of the particles.
         owner: Body of each particle of one, shape (n,).
+        vessels: Bodies that are vessels.
 
     Attributes:
         force: On each particle [N], shape (n,).
@@ -26,8 +28,10 @@ class BodyPush:
         handed: What each hands on to the next step, shape (n,): see `wsim.kernels.sph.push`.
     """
 
-    def __init__(self, search: ParticleSearch, owner: wp.array) -> None:
+    def __init__(self, search: ParticleSearch, owner: wp.array, vessels: frozenset[int] = frozenset()) -> None:
         self._owner = owner
+        self._of_vessel = wp.array(np.isin(owner.numpy(), sorted(vessels)).astype(np.int32), dtype=int)
+        self._spares = bool(vessels)
         self.force = wp.zeros(len(owner), dtype=wp.vec3)
         self.world_first = wp.array(search.bodies.world_first, dtype=int)
         self.handed = wp.full(len(owner), wp.vec3(DRY, 0.0, 1.0), dtype=wp.vec3)
@@ -72,6 +76,13 @@ class BodyPush:
             inputs=[search.grid, method, walls, bodies],
             outputs=[search.bodies.across],
         )
+        if self._spares:
+            wp.launch(
+                push_kernels.spare_vessels,
+                dim=search.bodies.count,
+                inputs=[search.bodies.order, self._of_vessel],
+                outputs=[search.bodies.across],
+            )
         launch_shared(
             search.programs.push,
             dim=search.bodies.count,

@@ -9,35 +9,16 @@ from typing import Any
 import numpy as np
 import trimesh
 import warp as wp
-from newton import GeoType, ShapeFlags
 
-from wsim.geometry.kinds import KINDS
-from wsim.geometry.rotations import rotate
 from wsim.geometry.surfaces import Surface
 from wsim.kernels.sph.skins import add_blows, keep_out_of_skins
+from wsim.solvers.vessels import Vessel
 
 Array = np.ndarray
-ROUND = (GeoType.SPHERE, GeoType.CYLINDER, GeoType.CAPSULE)
-MESHES = (GeoType.MESH, GeoType.CONVEX_MESH)
-SOLID = (GeoType.BOX, *ROUND, *MESHES)
 NOWHERE = wp.vec3(math.nan, math.nan, math.nan)
 OVERLAP = 0.02  # spacings that the parts of a vessel reach into each other: staves that are rounded leave cracks
 STEEP = 0.3  # of a corner's normal along a face's, at least, or a needle would grow without bound
 QUANTUM = 1e-9  # of the heaviest particle's mass times the spacing per step
-
-
-def surface_of_shape(kind: int, scale: Array, source: Any) -> Surface:
-    """A Newton shape as a mesh in its own frame; of a convex mesh its hull."""
-    if kind in MESHES:
-        mesh = source.compute_convex_hull() if kind == GeoType.CONVEX_MESH else source
-        vertices = np.asarray(mesh.vertices, dtype=float).reshape(-1, 3) * scale
-        return Surface(vertices, np.asarray(mesh.indices, dtype=np.intp).reshape(-1, 3))
-    if kind == GeoType.BOX:
-        return KINDS["box"](*(2.0 * scale).tolist()).surface()
-    if kind == GeoType.SPHERE:
-        return KINDS["sphere"](float(scale[0])).surface()
-    name = "cylinder" if kind == GeoType.CYLINDER else "capsule"
-    return KINDS[name](float(scale[0]), 2.0 * float(scale[1])).surface()
 
 
 def thickened(surface: Surface, by: float) -> Surface:
@@ -54,31 +35,25 @@ def thickened(surface: Surface, by: float) -> Surface:
 
 
 class Skins:
-    """The skins of each world: of the vessels that stand still together, and of each that moves.
+    """The skins of each world, one of each vessel.
 
     Args:
         model: The `newton.Model`.
         world_count: W.
         spacing: Between particles [m].
-        vessels: Labels of the shapes that vessels are made of.
+        vessels: What has one; those that are bodies move.
 
     Attributes:
         count: Number of skins.
     """
 
-    def __init__(self, model: Any, world_count: int, spacing: float, vessels: frozenset[str]) -> None:
+    def __init__(self, model: Any, world_count: int, spacing: float, vessels: Sequence[Vessel] = ()) -> None:
         self._model, self._spacing = model, spacing
         self._meshes: dict[bytes, wp.Mesh] = {}
-        bodies, kinds = model.shape_body.numpy(), model.shape_type.numpy()
-        collides = (model.shape_flags.numpy() & ShapeFlags.COLLIDE_SHAPES) != 0
-        held = np.array([str(label) in vessels for label in model.shape_label], dtype=bool) & np.isin(kinds, SOLID)
-        own = model.shape_world.numpy()
-        groups: dict[tuple[int, int], list[int]] = {}
-        for k in np.flatnonzero(collides & held).tolist():
-            for w in range(world_count) if own[k] < 0 else (int(own[k]),):
-                groups.setdefault((w, int(bodies[k])), []).append(k)
-        keys = sorted(groups)
-        made = [self._skin(groups[key]) for key in keys]
+        homes = [(world, body, vessel) for vessel in vessels for world, body in vessel.homes(model)]
+        homes.sort(key=lambda home: home[0])
+        made = [self._skin(vessel) for _, _, vessel in homes]
+        keys = [(world, body) for world, body, _ in homes]
         first = np.concatenate([[0], np.cumsum(np.bincount([w for w, _ in keys], minlength=world_count))])
         self.count = len(keys)
         self._skins = (
@@ -94,20 +69,15 @@ class Skins:
         heaviest = float(model.particle_mass.numpy().max(initial=0.0))
         self._least = QUANTUM * heaviest * spacing  # [kg m]
 
-    def _skin(self, shapes: Sequence[int]) -> tuple[wp.Mesh, Array]:
-        """One mesh of some shapes, the same for bodies that are alike, and a ball around it."""
-        vertices, triangles, first = [], [], 0
-        kinds, scales = self._model.shape_type.numpy(), self._model.shape_scale.numpy().astype(float)
-        poses = self._model.shape_transform.numpy().astype(float)
-        for k in shapes:
-            surface = surface_of_shape(int(kinds[k]), scales[k], self._model.shape_source[k])
-            if len(shapes) > 1:
-                surface = thickened(surface, OVERLAP * self._spacing)
-            vertices.append(rotate(poses[k, 3:], surface.vertices) + poses[k, :3])
-            triangles.append(surface.triangles + first)
-            first += len(surface.vertices)
-        points = np.concatenate(vertices).astype(np.float32)
-        faces = np.concatenate(triangles).astype(np.int32)
+    def _skin(self, vessel: Vessel) -> tuple[wp.Mesh, Array]:
+        """One mesh of a vessel, the same for vessels that are alike, and a ball around it."""
+        surfaces = list(vessel.surfaces)
+        if len(surfaces) > 1:
+            surfaces = [thickened(surface, OVERLAP * self._spacing) for surface in surfaces]
+        first = np.cumsum([0, *(len(surface.vertices) for surface in surfaces)])
+        points = np.concatenate([surface.vertices for surface in surfaces]).astype(np.float32)
+        faces = np.concatenate([surface.triangles + k for surface, k in zip(surfaces, first[:-1], strict=True)])
+        faces = faces.astype(np.int32)
         key = points.tobytes() + faces.tobytes()
         if key not in self._meshes:
             self._meshes[key] = wp.Mesh(wp.array(points, dtype=wp.vec3), wp.array(faces.reshape(-1), dtype=wp.int32))

@@ -18,12 +18,11 @@ from wsim.solvers.fixed_shapes import FixedShape, fixed_shape
 from wsim.solvers.shapes import OpenBox, sample_container
 from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.tiles import Tiles, keys_of
-from wsim.solvers.vessels import Vessel
+from wsim.solvers.vessel_walls import VesselWalls
 
 Array = np.ndarray
 TILE = 8  # spacings that a tile is long
 FEW = 3  # particles that lie together, which have no weight to speak of
-CLEAR = 0.9  # spacings between what is a vessel's wall and what is not
 CORNERS = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
 
 
@@ -38,20 +37,12 @@ class _Standing:
     """
 
     def __init__(
-        self, shapes: list[FixedShape], planes: list[FixedShape], hollows: list[OpenBox], vessels: list[Samples]
+        self, shapes: list[FixedShape], planes: list[FixedShape], hollows: list[OpenBox], walls: list[Samples]
     ) -> None:
         self.shapes, self.hollows = [*shapes, *planes], hollows
         self.finite = len(shapes)
         self.home: Array = np.zeros(0, dtype=np.int64)
-        self.laid: list[Samples] = list(vessels)
-        self._vessels = cKDTree(np.concatenate([walls.position for walls in vessels])) if vessels else None
-
-    def beside_vessels(self, samples: Samples, clear: float) -> Samples:
-        """Samples but for those within `clear` [m] of a vessel's walls: through thin ones they would count twice."""
-        if self._vessels is None:
-            return samples
-        keep = self._vessels.query(samples.position)[0] > clear
-        return Samples(samples.position[keep], samples.volume[keep])
+        self.laid = walls
 
 
 class FixedSolids:
@@ -68,36 +59,30 @@ class FixedSolids:
         model: The `newton.Model`.
         config: For the spacing, the kernel's support, dimensions and periodic axes.
         containers: Tanks of all worlds.
-        vessels: What else holds fluid in them; those that are bodies are left to `sample_bodies`.
+        vessels: The walls of what else holds fluid in them; those of bodies are left to `sample_bodies`.
 
     Raises:
-        ValueError: If a container is too narrow for the spacing, or a vessel has no hollow.
+        ValueError: If a container is too narrow for the spacing.
     """
 
     def __init__(
-        self, model: newton.Model, config: ConfigSPH, containers: Sequence[OpenBox], vessels: Sequence[Vessel] = ()
+        self, model: newton.Model, config: ConfigSPH, containers: Sequence[OpenBox], vessels: VesselWalls
     ) -> None:
-        self._config = config
+        self._config, self._vessels = config, vessels
         self.world_count = max(1, model.world_count)
         flat = np.array([False, config.dimensions == 2, False])
         periodic = np.array([ends is not None for ends in config.periodic])
         self._tiles = Tiles(TILE * config.spacing, ~(flat | periodic))
         # A particle sees as far as the support, and a list as far as its skin beyond.
         self._guard = (1.0 + config.skin) * config.support
-        walls = [(vessel.world, vessel.walls(config.spacing)) for vessel in vessels if vessel.body is None]
         self._worlds = [
-            _Standing(
-                *shapes,
-                [box for box in containers if box.world in (-1, w)],
-                [samples for of, samples in walls if of in (-1, w)],
-            )
-            for w, shapes in enumerate(_shapes_of(model, config, [*containers, *vessels]))
+            _Standing(*shapes, [box for box in containers if box.world in (-1, w)], vessels.of(w))
+            for w, shapes in enumerate(_shapes_of(model, config, containers, vessels))
         ]
-        clear = CLEAR * config.spacing
-        for world in self._worlds:
+        for w, world in enumerate(self._worlds):
             tanks = [Samples(*sample_container(box, config)) for box in world.hollows]
-            world.laid += [world.beside_vessels(samples, clear) for samples in tanks]
-            world.laid += [self._lay(world, *self._around(box), world.finite) for box in world.hollows]
+            world.laid += [vessels.beside(samples, w) for samples in tanks]
+            world.laid += [self._lay(w, *self._around(box), world.finite) for box in world.hollows]
         self._find = _Finder(model, self._worlds, self._tiles, self._guard)
 
     @property
@@ -143,12 +128,12 @@ class FixedSolids:
         self._find.stale = True
         before = len(world.laid)
         corners = [self._tiles.corners(tile) for tile in tiles[fresh]]
-        world.laid += [each for low, high in corners if len((each := self._lay(world, low, high)).volume)]
+        world.laid += [each for low, high in corners if len((each := self._lay(w, low, high)).volume)]
         return len(world.laid) > before
 
-    def _lay(self, world: _Standing, low: Array, high: Array, count: int | None = None) -> Samples:
+    def _lay(self, w: int, low: Array, high: Array, count: int | None = None) -> Samples:
         """Particles of a world's shapes, of the first `count`, that are in a box from one corner to another."""
-        found = []
+        world, found = self._worlds[w], []
         for k, shape in enumerate(world.shapes[:count]):
             if (low > shape.high).any() or (high < shape.low).any():
                 continue
@@ -167,7 +152,7 @@ class FixedSolids:
         if not found:
             return Samples(np.zeros((0, 3)), np.zeros(0))
         laid = Samples(np.concatenate([f.position for f in found]), np.concatenate([f.volume for f in found]))
-        return world.beside_vessels(laid, CLEAR * self._config.spacing)
+        return self._vessels.beside(laid, w)
 
     def _around(self, box: OpenBox) -> tuple[Array, Array]:
         """Corners of what is upright around a hollow, and of what water at its rim sees [m]."""
@@ -261,21 +246,22 @@ class _Finder:
 
 
 def _shapes_of(
-    model: newton.Model, config: ConfigSPH, holders: Sequence[OpenBox | Vessel]
+    model: newton.Model, config: ConfigSPH, containers: Sequence[OpenBox], vessels: VesselWalls
 ) -> list[tuple[list[FixedShape], list[FixedShape]]]:
     """Of each world the shapes that stand still, which are no walls of what holds fluid, and the planes."""
-    walls = frozenset().union(*(holder.shapes for holder in holders))
+    walls = frozenset().union(*(box.shapes for box in containers))
     kinds, poses, scales = model.shape_type.numpy(), model.shape_transform.numpy(), model.shape_scale.numpy()
     bodies, flags, worlds = model.shape_body.numpy(), model.shape_flags.numpy(), model.shape_world.numpy()
     found: list[tuple[list[FixedShape], list[FixedShape]]] = [([], []) for _ in range(max(1, model.world_count))]
     for k in range(model.shape_count):
-        if bodies[k] >= 0 or not flags[k] & ShapeFlags.COLLIDE_SHAPES or model.shape_label[k] in walls:
+        label = str(model.shape_label[k])
+        if bodies[k] >= 0 or not flags[k] & ShapeFlags.COLLIDE_SHAPES or label in walls or vessels.made_of(label):
             continue
         kind = int(kinds[k])
         shape = fixed_shape(kind, poses[k].astype(float), scales[k].astype(float), model.shape_source[k], config)
         if shape is None:
             name = GeoType(kind).name
-            warnings.warn(f"SolverSPH: the fluid does not see {model.shape_label[k]}, a {name}", stacklevel=4)
+            warnings.warn(f"SolverSPH: the fluid does not see {label}, a {name}", stacklevel=4)
             continue
         for w in range(len(found)) if worlds[k] < 0 else [int(worlds[k])]:
             found[w][kind == GeoType.PLANE].append(shape)

@@ -5,10 +5,12 @@ As with a tank (`OpenBox`), a thin wall's own volume would leave the kernel of a
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
 
 import numpy as np
-import trimesh
 from scipy.spatial import cKDTree
 
 from wsim.geometry.filled import Samples
@@ -22,7 +24,14 @@ CELLS = 3  # of the grid that its hollow is found on, along a spacing at least
 PIECES = 4  # of a spacing: what its inside is cut into
 FRONT = (0.6, 1.2)  # cells in front of an inner face that the hollow begins
 BESIDE = 0.6  # of a piece's edge: how far off its middle it still goes on
+EVENLY = (5, 3)  # sweeps and pieces that its walls are spread with: volumes to 0.15, as ten and four have to 0.12
+KEPT = 16  # vessels whose walls are remembered
 NOWHERE = -1e9  # [m]: as deep as what is no wall
+
+
+def own_label(label: str) -> str:
+    """The label of the mesh that Newton made a convex part of."""
+    return re.sub(r"_convex_\d+$", "", label)
 
 
 @dataclass(frozen=True)
@@ -37,8 +46,19 @@ class Vessel:
     """Labels of the model's shapes that are its walls; they are not sampled again."""
     body: str | None = None
     """Label of the body that it is; None: it stands still."""
+    goes: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
+    """Lower and upper corner of the room that it moves in [m]; None: it stays where its fluid starts."""
     world: int = -1
     """The world that it stands in; -1 is every world."""
+
+    def homes(self, model: Any) -> list[tuple[int, int]]:
+        """The worlds of a model that it is in, and its body in each, or -1."""
+        worlds = range(max(1, model.world_count)) if self.world < 0 else (self.world,)
+        if self.body is None:
+            return [(world, -1) for world in worlds]
+        own = model.body_world.numpy()
+        found = [(max(0, int(own[k])), k) for k, label in enumerate(model.body_label) if str(label) == self.body]
+        return [(world, body) for world, body in found if world in worlds]
 
     def walls(self, spacing: float) -> Samples:
         """Layers of particles behind its inside up to the rim, as deep as a kernel reaches, in its frame.
@@ -46,18 +66,30 @@ class Vessel:
         Raises:
             ValueError: If it has no hollow.
         """
-        turn = np.array(self.upright, dtype=np.float64)
-        surfaces = [surface.turned(turn) for surface in self.surfaces]
-        hollow = Hollow(surfaces, spacing / CELLS)
-        behind = _Behind(surfaces, hollow, spacing)
-        reach = (RELAXED + 1) * spacing
-        low, high = behind.middles.min(axis=0) - reach, behind.middles.max(axis=0) + reach
-        ticks = [np.arange(a, b, spacing) + 0.5 * spacing for a, b in zip(low, high, strict=True)]
-        cells = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
-        depth = behind(cells)
-        near = (depth > -2.0 * spacing) & (depth < (RELAXED + 1) * spacing)
-        found = spread_layers(cells[near], depth[near], np.full(3, spacing), spacing, behind)
-        return Samples(rotate(conjugate(turn), found.position), found.volume)
+        parts = tuple((each.vertices.tobytes(), each.triangles.tobytes()) for each in self.surfaces)
+        return _walls(parts, self.upright, spacing)
+
+
+@lru_cache(maxsize=KEPT)
+def _walls(
+    parts: tuple[tuple[bytes, bytes], ...], upright: tuple[float, float, float, float], spacing: float
+) -> Samples:
+    """Walls of surfaces, as the bytes of their vertices and triangles: worlds that are alike share them."""
+    turn = np.array(upright, dtype=np.float64)
+    surfaces = [
+        Surface(np.frombuffer(v).reshape(-1, 3), np.frombuffer(t, dtype=np.intp).reshape(-1, 3)).turned(turn)
+        for v, t in parts
+    ]
+    hollow = Hollow(surfaces, spacing / CELLS)
+    behind = _Behind(surfaces, hollow, spacing)
+    reach = (RELAXED + 1) * spacing
+    low, high = behind.middles.min(axis=0) - reach, behind.middles.max(axis=0) + reach
+    ticks = [np.arange(a, b, spacing) + 0.5 * spacing for a, b in zip(low, high, strict=True)]
+    cells = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
+    depth = behind(cells)
+    near = (depth > -2.0 * spacing) & (depth < (RELAXED + 1) * spacing)
+    found = spread_layers(cells[near], depth[near], np.full(3, spacing), spacing, behind, *EVENLY)
+    return Samples(rotate(conjugate(turn), found.position), found.volume)
 
 
 class _Behind:
@@ -81,8 +113,7 @@ class _Behind:
 
 def _inside_of(surface: Surface, hollow: Hollow, edge: float) -> tuple[Array, Array]:
     """Middles (n, 3) [m] and normals (n, 3), towards the hollow, of a surface's pieces that face it."""
-    points, faces = trimesh.remesh.subdivide_to_size(surface.vertices, surface.triangles, edge, max_iter=30)
-    corners = points[faces]
+    corners = _pieces(surface.vertices[surface.triangles], edge)
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(normal, axis=1)
     flat = length > 1e-9 * edge**2
@@ -97,3 +128,17 @@ def _inside_of(surface: Surface, hollow: Hollow, edge: float) -> tuple[Array, Ar
         normals = np.where((back & ~front)[:, None], -normals, normals)
         front = front != back
     return middles[front], normals[front]
+
+
+def _pieces(corners: Array, edge: float) -> Array:
+    """Triangles (n, 3, 3) [m], each cut across its longest edge until that is no longer than `edge`."""
+    done = []
+    while len(corners):
+        sides = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
+        small = sides.max(axis=1) <= edge
+        done.append(corners[small])
+        longest = (sides[~small].argmax(axis=1)[:, None] + np.arange(3)) % 3
+        a, b, c = np.moveaxis(np.take_along_axis(corners[~small], longest[:, :, None], axis=1), 1, 0)
+        middle = 0.5 * (a + b)
+        corners = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+    return np.concatenate(done)

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.defaults import FLUID_VISCOSITY
+from wsim.geometry.shapes import into, kind_of
 from wsim.judge.checks.check import Check, Checks, listed, share_about
 from wsim.judge.verdict import RepairTarget
+from wsim.scene.contact import within
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -18,9 +20,17 @@ if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
     from wsim.plan.schema import PlanObject
-    from wsim.scene.world import Fluid
+    from wsim.scene.world import Fluid, Shape
 
     Floats = NDArray[np.float64]
+
+
+MOST_PLACES = 200_000  # at which a fluid's box is looked at
+
+
+def _beside(shape: Shape, middle: Floats, reach: float) -> bool:
+    """Whether no point of a shape is within a reach of a place [m]."""
+    return math.dist(shape.position, middle) > reach + kind_of(shape).radius_about
 
 
 @dataclass
@@ -38,10 +48,11 @@ class CheckFluidMass(Check):
         count = int(track.count[0]) if len(track.time) else 0
         volume = fluid.amount
         inside = sum(self._drowned(evidence, fluid, i) for i in range(len(evidence.world.bodies)))
+        still, about = self._standing(evidence, fluid)
         value = fluid.density * fluid.cell * count
-        expected = fluid.density * max(volume - inside, 0.0)
+        expected = fluid.density * max(volume - inside - still, 0.0)
         # A body pushes out the particles whose centres are in it or near: up to a layer of half a spacing all round.
-        skin = sum(self._skin(evidence, fluid, i) for i in range(len(evidence.world.bodies)))
+        skin = about - still + sum(self._skin(evidence, fluid, i) for i in range(len(evidence.world.bodies)))
         low, high = share_about(expected, self.share)
         target = RepairTarget(kind="fluid", prim=fluid.prim, parameter="spacing", direction="change")
         return self.between(
@@ -52,9 +63,31 @@ class CheckFluidMass(Check):
         )  # fmt: skip
 
     @staticmethod
+    def _standing(evidence: Evidence, fluid: Fluid) -> tuple[float, float]:
+        """How much of the fluid's box what stands still takes up, and with half a spacing around it [m^3]."""
+        if fluid.volume is not None:  # a vessel's hollow is its own, and not the box
+            return 0.0, 0.0
+        size, middle = np.array(fluid.size), np.array(fluid.center)
+        edge = max(0.5 * fluid.spacing, float((size.prod() / MOST_PLACES) ** (1.0 / 3.0)))
+        counts = np.maximum(np.round(size / edge), 1).astype(int)
+        axes = [((np.arange(n) + 0.5) / n - 0.5) * length for n, length in zip(counts, size, strict=True)]
+        places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3) + middle
+        depth = np.full(len(places), -np.inf)
+        for shape in (shape for static in evidence.world.statics for shape in static.shapes if shape.collides):
+            reach = 0.5 * float(np.linalg.norm(size)) + fluid.spacing
+            own = fluid.container is not None and within(shape.prim, fluid.container)  # it ends at its tank's walls
+            if own or shape.kind == "plane" or _beside(shape, middle, reach):
+                continue
+            depth = np.maximum(depth, kind_of(shape).depth(into(shape, places)))
+        cell = float(size.prod()) / len(places)
+        return cell * float((depth > 0.0).sum()), cell * float((depth > -0.5 * fluid.spacing).sum())
+
+    @staticmethod
     def _drowned(evidence: Evidence, fluid: Fluid, i: int) -> float:
         """The volume of body i that is in the fluid's box at the start, if it is over it [m^3]."""
         q = evidence.body_q[0, i]
+        if evidence.world.bodies[i].prim == fluid.container:
+            return 0.0
         if np.any(np.abs(q[:2] - np.array(fluid.center[:2])) > np.array(fluid.size[:2]) / 2):
             return 0.0
         low, high = fluid.center[2] - fluid.size[2] / 2, fluid.center[2] + fluid.size[2] / 2
@@ -158,9 +191,10 @@ class CheckPlanFluid(Check):
         """It is in what the plan has it in, and as much of it as the plan says."""
         row, volume = item.relation("PLACE-IN"), item.registration.volume
         found = []
-        if row is not None and row.ref is not None and fluid.container != evidence.prim(row.ref):
+        prim = evidence.prim(row.ref) if row is not None and row.ref is not None else None
+        if prim is not None and not f"{fluid.container}/".startswith(f"{prim}/"):  # of an asset the body that is hollow
             target = RepairTarget(kind="program", prim=fluid.prim, parameter="fills", why="the plan's")
-            message = f"{fluid.prim} is in {fluid.container or 'no vessel'}; the plan has it in {row.ref}"
+            message = f"{fluid.prim} is in {fluid.container or 'no vessel'}; the plan has it in {prim}"
             found.append(self.failed(message, prim=fluid.prim, target=target))
         if volume is not None and abs(fluid.amount / volume - 1.0) > self.share:
             target = RepairTarget(kind="fluid", prim=fluid.prim, parameter="volume", suggested=volume, unit="m^3")
@@ -208,7 +242,7 @@ class CheckHydrostatic(Check):
         """One finding for each fluid that is at rest in a container over the final window: the slope [Pa/m]."""
         found = []
         for fluid in evidence.world.fluids:
-            sound = fluid.speed_of_sound or float(evidence.recording.metadata.get("speed_of_sound") or 0.0)
+            sound = evidence.sound(fluid)
             track = evidence.track(fluid)
             if sound <= 0.0 or track.density.size == 0 or evidence.gravity <= 0.0:
                 continue
@@ -225,7 +259,7 @@ class CheckHydrostatic(Check):
         if container is None or not len(frames):
             return None
         level = evidence.level(fluid)
-        height = level.height - level.floor
+        height = level.height - level.bottom
         speed = math.sqrt(float(track.mean(np.einsum("tni,tni->tn", track.velocity, track.velocity))[frames].mean()))
         if height < self.layers * fluid.spacing or speed > self.still * evidence.velocity_scale(height):
             return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from wsim.scene.world import Container, World
+    from wsim.scene.world import Container, Fluid, World
     from wsim.scene.world_openings import Tap
 
     Floats = NDArray[np.float64]
@@ -101,6 +102,11 @@ def local(container: Container, points: Floats) -> Floats:
     if np.array_equal(q, [0.0, 0.0, 0.0, 1.0]):
         return shifted
     return rotate(conjugate(q), shifted)
+
+
+def alike(one: Fluid, other: Fluid) -> bool:
+    """Whether two fluids are the same liquid to what floats in them."""
+    return math.isclose(one.density, other.density)
 
 
 def lone_pool(world: World, container: Container, up: Floats) -> bool:

@@ -269,8 +269,8 @@ class Recorded:
             i = self.index(prim)
             frames = np.abs(self.time[:, None] - track.time).argmin(axis=0)
             shapes, pose = self.world.bodies[i].shapes, self.body_q[frames, i].astype(np.float64)
-        poured = bool(self.world.taps)
-        found = strayed(shapes, pose, track.position, fluid.spacing, self.up, poured).sum(axis=1)
+        moves, tapped = still is None, bool(self.world.taps)
+        found = strayed(shapes, pose, track.position, fluid.spacing, self.up, moves, tapped).sum(axis=1)
         return np.asarray(found / np.maximum(track.count, 1))
 
 

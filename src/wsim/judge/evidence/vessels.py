@@ -28,9 +28,12 @@ def strayed(
     position: NDArray[np.float32],
     slack: float,
     up: Floats,
-    poured: bool = False,
+    moves: bool = False,
+    tapped: bool = False,
 ) -> Bools:
     """Which particles are beside or under a vessel, as of a tank: over its rim is not (T, N).
+
+    What leaves one that moves over its rim is poured, wherever it falls to.
 
     Args:
         shapes: Of the vessel, in its frame.
@@ -38,24 +41,32 @@ def strayed(
         position: Of the particles (T, N, 3) [m]; NaN where one is not in the world, and has not strayed.
         slack: How far beyond the hull they may be [m].
         up: Against gravity, in the world (3,).
-        poured: Whether one may come from a tap anywhere over the vessel: it has strayed when it is below that.
+        moves: Whether it does.
+        tapped: Whether one may come from a tap anywhere over the vessel: it has strayed when it is below that.
     """
     upward = rotate(conjugate(pose[0, 3:]), up)
-    walls, top = walls_of(shapes, upward)
+    walls, lids, top = faces_of(shapes, upward)
     found = np.empty(position.shape[:2], dtype=bool)
+    poured, before = np.zeros(position.shape[1], dtype=bool), None
     for t, points in enumerate(position):  # one frame at a time: a recording may be larger than a cache
         places = rotate(conjugate(pose[t, 3:]), points - pose[t, :3])
         found[t] = (places @ walls[:, :3].T > walls[:, 3] + slack).any(axis=1)
-        if poured:
+        if tapped:
             found[t] &= places @ upward <= top + slack
+        if moves:
+            way = 0.0 if before is None else np.linalg.norm(places - before, axis=1)
+            near = (places @ lids[:, :3].T - lids[:, 3]).max(axis=1, initial=-np.inf) > -slack - way
+            poured |= near
+            found[t] &= ~poured
+            before = places
     return found
 
 
-def walls_of(shapes: Sequence[Shape], up: Floats) -> tuple[Floats, float]:
-    """The hull's faces, but for those that close the mouth, (K, 4): behind one is where n . x <= d; and its top [m]."""
+def faces_of(shapes: Sequence[Shape], up: Floats) -> tuple[Floats, Floats, float]:
+    """The hull's faces, n . x <= d behind each (K, 4): walls and floor, what closes the mouth; and its top [m]."""
     surfaces = Solid([shape for shape in shapes if shape.collides]).surfaces
     vertices = np.vstack([surface.vertices for surface in surfaces])
     equations = ConvexHull(vertices).equations
     faces = np.hstack([equations[:, :3], -equations[:, 3:]])
-    walls: Floats = faces[faces[:, :3] @ up < LID]
-    return walls, float((vertices @ up).max())
+    lid = faces[:, :3] @ up >= LID
+    return faces[~lid], faces[lid], float((vertices @ up).max())

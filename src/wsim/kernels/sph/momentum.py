@@ -82,6 +82,8 @@ def make_momentum(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         v = wp.vec3(m[0], m[1], m[2])
         world = fluid.world[i]
         viscous = viscosities(method, rest_density[world], viscosity[world])
+        if wp.static(sums.several):
+            viscous = viscosities(method, 1.0, 1.0)
         own = m[3] + 2.0 * method.background_pressure
         total = of_fluid(grid, fluid, fluid, s, world, method.shape, x, v, own, viscous)
         at_walls = AtWalls()

@@ -30,7 +30,12 @@ class Programs:
     @staticmethod
     @functools.cache
     def make(
-        lists: bool, periodic: tuple[bool, bool, bool], branch: bool, reach: tuple[int, int], solids: tuple[int, ...]
+        lists: bool,
+        periodic: tuple[bool, bool, bool],
+        branch: bool,
+        reach: tuple[int, int],
+        solids: tuple[int, ...],
+        several: bool = False,
     ) -> Programs:
         """Build the kernels, once in a process; see `make_pair_sums`.
 
@@ -40,8 +45,9 @@ class Programs:
             branch: Pass over what lies beyond the support.
             reach: Cells that the support spans along y and z.
             solids: `WALLS`, `BODIES`, both or none: the kinds of solids that there are.
+            several: Whether each particle of fluid has its own liquid.
         """
-        sums = make_pair_sums(lists, periodic, branch, reach)
+        sums = make_pair_sums(lists, periodic, branch, reach, several)
         return Programs(
             make_finders(sums, solids),
             make_compress(sums),

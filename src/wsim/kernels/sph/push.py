@@ -7,7 +7,7 @@ from wsim.kernels.sph.grid import Grid
 from wsim.kernels.sph.momentum import viscosities
 from wsim.kernels.sph.pair_sums import Gap, PairSums
 from wsim.kernels.sph.records import load_record
-from wsim.kernels.sph.species import BODIES, DRY, FLUID, WALLS, Species, is_near
+from wsim.kernels.sph.species import BODIES, DRY, WALLS, Species, is_near
 
 # Steps that pressure seeps on from the water that it came from: two spacings in each, far more than a face has. Where
 # that water has left, it grows with each step, until nothing is left of the pressure either.
@@ -47,6 +47,20 @@ def gather_bodies(
     sorted_handed[s] = wp.vec4(h[0], h[1], h[2], float(owner[i]))
 
 
+@wp.kernel(enable_backward=False)
+def spare_vessels(
+    # Data in:
+    order: wp.array(dtype=int),
+    of_vessel: wp.array(dtype=int),
+    # Data out:
+    across: wp.array(dtype=wp.vec4),
+):
+    """Let no gap be at the walls of a vessel: their particles lie behind its inside, in what is next to it."""
+    s = wp.tid()
+    if of_vessel[order[s]] > 0:
+        across[s] = wp.vec4(0.0, 0.0, 0.0, 0.0)
+
+
 def make_look_across(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
     """The kernel that finds where other solids are, given the kinds of solids."""
     of_walls, of_bodies = sums.way[WALLS], sums.way[BODIES]
@@ -82,7 +96,7 @@ def make_look_across(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
 
 def make_push(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
     """The kernel that sums the fluid's forces on the particles of bodies, given the kinds of solids."""
-    of_fluid, of_walls, of_bodies = sums.force[FLUID], sums.force_in_gap[WALLS], sums.force_in_gap[BODIES]
+    of_fluid, of_walls, of_bodies = sums.force_on_solid, sums.force_in_gap[WALLS], sums.force_in_gap[BODIES]
     gradient, seeping = sums.gradient, sums.seeping
 
     @wp.kernel(**sums.options)
@@ -133,6 +147,8 @@ def make_push(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         i = bodies.order[s]
         world = bodies.world[i]
         weight_of_water, least = rest_density[world] * gravity[world], -method.background_pressure
+        if wp.static(sums.several):
+            weight_of_water = bodies.liquid[s][0] * gravity[world]
         wet = m[3] > 0.5 * DRY
         pressure = m[3] if wet else load_record(bodies.handed, s)[0]
         own = pressure - 2.0 * least
@@ -140,6 +156,8 @@ def make_push(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         to_hand = wp.vec3(DRY, 0.0, 1.0)
         if wet:
             viscous = viscosities(method, rest_density[world], viscosity[world])
+            if wp.static(sums.several):
+                viscous = viscosities(method, 1.0, 1.0)
             total = of_fluid(grid, bodies, fluid, s, world, method.shape, x, v, own, viscous)
         if e[0] != 0.0 or e[1] != 0.0 or e[2] != 0.0:
             given = wp.vec3(pressure, least, 0.0)

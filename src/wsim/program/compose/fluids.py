@@ -22,16 +22,21 @@ def container(item: PlanObject) -> str | None:
     return relation.ref if relation is not None else None
 
 
+def level(item: PlanObject) -> float:
+    """How high a fluid fills its container [m]; infinity where a block of it stands there."""
+    relation = item.relation("FREE-SURFACE-AT")
+    return math.inf if relation is None or relation.value is None else relation.value
+
+
 def arguments(draft: Draft, item: PlanObject) -> list[str]:
     """All arguments but the name."""
     plan = draft.plan
     held = container(item)
-    level = item.relation("FREE-SURFACE-AT")
     amount = item.registration.volume
-    if held is not None and (amount is not None or (level is not None and level.value is not None)):
-        high = level.value if level is not None else None
+    if held is not None and (amount is not None or level(item) < math.inf):
+        high = level(item) if amount is None else None
         volume: Sequence[float] = _in_the_end(plan, item, filled_box(plan.object(held), high, amount))
-        how = f"level={number(high)}" if high is not None else f"volume={number(amount or 0.0)}"
+        how = f"level={number(level(item))}" if amount is None else f"volume={number(amount)}"
         found = [f"fills={draft.handles[held]}", how]
     else:
         volume = item.size
