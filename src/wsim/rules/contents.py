@@ -82,6 +82,13 @@ def check_amount(cast: Cast) -> None:
         said.append("share")
     if len(said) > 1:
         raise UserError(f"{cast.water or cast.tank!r}: the prompt says how full it is and how much is in it; keep one")
+    comes = [flow for flow in cast.flows if flow.kind != "drain"]
+    known = [value for flow in comes for value in (flow.volume, flow.level)]
+    left = [name for name in said if name != "share" and getattr(held, name) not in known]
+    if left and comes and not cast.stands and len(comes) == len(cast.flows):
+        raise NotUnderstood([cast.water or comes[0].words], "cannot tell whether so much is there before, or comes in:")
+    if cast.tank is not None and any(flow.vessel is not None for flow in cast.flows):
+        raise NotUnderstood([cast.tank], "fills one tank or one vessel, and not this as well:")
     if cast.share == 0.0 and cast.tank is not None and not cast.flows and cast.pour is None:
         raise NotUnderstood([cast.tank], "has an empty tank only for what flows or is poured into it:")
 

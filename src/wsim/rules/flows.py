@@ -16,6 +16,7 @@ _INTO = ("into", "in", "inside", "onto", "on", "to", "over", "above")
 _OUT = ("out_of", "from")
 _POURS = ("pour", "run", "fall", "fill", "go", "come")
 _DRAINS = ("drain", "empty", "pour", "run", "go", "come")
+_IS = ("is ", "are ", "was ", "were ", "gets ", "get ")
 _SHORTEST = 0.05  # [s] that a flow may last
 
 
@@ -137,7 +138,7 @@ def _vessel(reader: Reader, flow: Flow, at: Phrase, words: str) -> None:
         vessels = reader.cast.family("vessel")
         flow.vessel = flow.vessel or (vessels[-1] if len(vessels) == 1 and reader.cast.tank is None else None)
         return
-    if at.kind == "ground" and flow.kind == "rain":
+    if at.kind == "ground" and flow.kind == "rain" and words.startswith("on"):
         reader.scenery(at)
         flow.ground = True
         return
@@ -219,16 +220,17 @@ def _of_source(reader: Reader, flow: Flow, clause: Clause, action: Action) -> No
     """What a tap, rain or a hole does."""
     verb, target = action.verb, action.target
     known = {
-        "tap": (*_POURS, "open", "close", "stop", "start", "rest"),
+        "tap": ("pour", "run", "fill", "open", "close", "stop", "start", "rest"),
         "rain": ("fall", "pour", "fill", "stop", "start", "rest"),
         "drain": ("open", "drain", "rest"),
     }[flow.kind]
-    if verb not in known or len(clause.subjects) > 1:
+    done_to = action.words.startswith(_IS) and verb in ("fill", "drain", "pour", "run")  # "a tap is filled"
+    if verb not in known or len(clause.subjects) > 1 or done_to:
         raise NotUnderstood([f"{flow.words} {action.words}"], "cannot let a tap, rain or a hole do this:")
     if verb in ("close", "stop"):
         _ends(flow, action)
         return
-    if target is not None and target.kind == "water":
+    if target is not None and target.kind == "water" and verb != "fill":
         _amount(reader, flow, target)
     elif target is not None and verb in ("fill", "drain"):
         _target(reader, flow, target)
@@ -237,7 +239,7 @@ def _of_source(reader: Reader, flow: Flow, clause: Clause, action: Action) -> No
     for place in action.places:
         if place.preposition == "full" and place.full is not None and place.full.filled:
             contents.fill(reader.cast, place.full.filled, place.words)
-        elif not (place.preposition == "past" and is_source(place.phrase)):
+        else:
             _place(reader, flow, place)
 
 
@@ -253,6 +255,8 @@ def _ends(flow: Flow, action: Action) -> None:
 
 def _amount(reader: Reader, flow: Flow, liquid: Phrase) -> None:
     """ "Pours 2 litres of oil": which liquid, and how much of it."""
+    if liquid.filled or liquid.share is not None or liquid.places:
+        raise NotUnderstood([liquid.words], "pours a liquid into a tank, a bucket or a bowl, not so:")
     flow.volume = _once(flow.volume, liquid.volume, liquid.words)
     if contents.depth_of(liquid) is not None:
         flow.level = _once(flow.level, contents.depth_of(liquid), liquid.words)
@@ -301,6 +305,8 @@ def _filled(reader: Reader, vessels: list[Thing], clause: Clause, action: Action
         elif not reader.cast.stands:
             raise NotUnderstood([clause.words], "needs to be told with what, or by what tap, this is filled:")
         return True
+    if action.target is not None:
+        raise NotUnderstood([f"{clause.words}"], "lets a tank be filled with a liquid, as 'with milk' says, not so:")
     flow = named(reader, by.phrase) if by is not None and by.phrase is not None else _flow(reader, "tap", action.words)
     if vessels:
         flow.vessel = vessels[0]
@@ -328,7 +334,8 @@ def _emptied(reader: Reader, tank: Phrase | None, action: Action) -> None:
     if tank is not None:
         _vessel(reader, flow, tank, action.words)
     for place in action.places:
-        if place is not by and not (place.preposition in _OUT and place.phrase is tank):
+        out = place.preposition in _OUT and place.phrase is not None and place.phrase is tank
+        if place is not by and not out:
             _place(reader, flow, place)
 
 
@@ -339,7 +346,9 @@ def _poured(reader: Reader, liquid: Phrase, action: Action, by: Place | None) ->
         raise NotUnderstood([action.words], "needs to be told out of what tank this runs:")
     flow = named(reader, by.phrase) if by is not None and by.phrase is not None else _flow(reader, kind, action.words)
     _amount(reader, flow, liquid)
-    if action.target is not None and action.verb == "fill":
+    if action.target is not None and action.verb != "fill":
+        raise NotUnderstood([action.words], "pours a liquid into a tank, a bucket or a bowl, not so:")
+    if action.target is not None:
         _target(reader, flow, action.target)
     for place in action.places:
         if place is not by:

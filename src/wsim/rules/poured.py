@@ -14,6 +14,8 @@ def pour(reader: Reader, action: Action) -> None:
     Raises:
         NotUnderstood: It is poured elsewhere, or so as it cannot be.
     """
+    if action.target is not None:
+        raise NotUnderstood([action.words], "pours a liquid into a tank, a bucket or a bowl, not so:")
     vessel, height, level = None, None, None
     into = False
     for place in action.places:

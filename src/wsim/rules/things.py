@@ -160,7 +160,7 @@ class Things(Transformer):
         return children[0], {children[1].type.lower(): meant(children[1])}
 
     def filled_with(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
-        lead, held = children
+        lead, *_, held = children
         return lead, {"filled": Filled(held.liquid, volume=held.volume, level=held.measures.get("z"))}
 
     def filled_to(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:

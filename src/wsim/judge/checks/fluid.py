@@ -210,9 +210,10 @@ class CheckPlanFluid(Check):
         """It is in what the plan has it in, and as much of it as the plan says."""
         row, volume = item.relation("PLACE-IN"), item.registration.volume
         found = []
-        if row is not None and row.ref is not None and fluid.container != evidence.prim(row.ref):
+        prim = evidence.prim(row.ref) if row is not None and row.ref is not None else None
+        if prim is not None and not f"{fluid.container}/".startswith(f"{prim}/"):  # of an asset the body that is hollow
             target = RepairTarget(kind="program", prim=fluid.prim, parameter="fills", why="the plan's")
-            message = f"{fluid.prim} is in {fluid.container or 'no vessel'}; the plan has it in {row.ref}"
+            message = f"{fluid.prim} is in {fluid.container or 'no vessel'}; the plan has it in {prim}"
             found.append(self.failed(message, prim=fluid.prim, target=target))
         if volume is not None and abs(fluid.amount / volume - 1.0) > self.share:
             target = RepairTarget(kind="fluid", prim=fluid.prim, parameter="volume", suggested=volume, unit="m^3")

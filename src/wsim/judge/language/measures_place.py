@@ -130,7 +130,7 @@ def _fluid_inside(asked: StaysInside, signals: Signals) -> Measure:
     """Of a tank, or of the vessel that it fills."""
     evidence, fluid = signals.fluid(asked.object)
     track, prim = evidence.track(fluid), signals.prim(asked.ref)
-    own = fluid.volume is not None and fluid.container == prim
+    own = fluid.volume is not None and f"{fluid.container}/".startswith(f"{prim}/")
     outside = evidence.outside(fluid) if own else evidence.containment(signals.container(asked.ref), fluid).outside
     value = outside[latest(track.time, signals.time)][None]
     source = f"{asked.share:g} of the particles, farther out than a spacing of {fluid.spacing:g} m"

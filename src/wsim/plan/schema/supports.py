@@ -41,7 +41,7 @@ def _surfaces(plan: Draft) -> Iterator[str]:
 
 
 def _amount(i: int, item: PlanObject, items: dict[str, PlanObject]) -> Iterator[str]:
-    """One amount of a fluid; and what holds it stands still, unless it is a tank."""
+    """One amount of a fluid; and only a tank holds none at the start."""
     level, held = item.relation("FREE-SURFACE-AT"), item.relation("PLACE-IN")
     vessel = items.get(held.ref or "") if held is not None else None
     if item.registration.volume is not None and (level is not None or item.size or vessel is None):
@@ -49,11 +49,7 @@ def _amount(i: int, item: PlanObject, items: dict[str, PlanObject]) -> Iterator[
             f"objects.{i}.registration.volume: of a fluid that is PLACE-IN something, in place of its level and size; "
             "keep one"
         )
-    if vessel is None or vessel.primitive != "asset":
-        return
-    if vessel.state != "static":
-        yield f"objects.{i}: {item.name} fills {vessel.name}, which moves; what is filled has the state static"
-    if level is not None and level.value == 0.0:
+    if vessel is not None and vessel.primitive == "asset" and level is not None and level.value == 0.0:
         yield f"objects.{i}: {item.name} stands 0 m high in {vessel.name}; only a tank can start empty"
 
 

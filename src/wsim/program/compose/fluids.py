@@ -34,9 +34,9 @@ def arguments(draft: Draft, item: PlanObject) -> list[str]:
     held = container(item)
     amount = item.registration.volume
     if held is not None and (amount is not None or level(item) < math.inf):
-        high = level(item) if level(item) < math.inf else None
+        high = level(item) if amount is None else None
         volume: Sequence[float] = _in_the_end(plan, item, filled_box(plan.object(held), high, amount))
-        how = f"level={number(high)}" if high is not None else f"volume={number(amount or 0.0)}"
+        how = f"level={number(level(item))}" if amount is None else f"volume={number(amount)}"
         found = [f"fills={draft.handles[held]}", how]
     else:
         volume = item.size

@@ -30,6 +30,7 @@ FULL = 0.5  # of a tank's height that what comes in fills it to
 TALL = 0.8  # a tank's height against the root of its area
 LONG = 4 / 3  # its length against its width
 PARTICLES, MOST_PARTICLES = 5000, 30_000
+WALLS, LAYERS = 15_000, 2  # particles of floor and walls, about, and layers of them
 MOUTH, ACROSS = 4, 6  # spacings across a mouth, and across a hole
 OVER = 3.0  # spacings of a mouth above the rim, at least
 MOST_SPEED = 1.5  # out of a mouth whose width the prompt leaves open [m/s]
@@ -260,7 +261,8 @@ def _spacing(tap: Flow | None, hole: Flow | None, vat: Vat, cast: Cast) -> tuple
     """
     comes = tap.rate * tap.lasts if tap is not None and tap.rate and tap.lasts else 0.0
     volume = vat.level * vat.area + comes
-    spacing = (volume / PARTICLES) ** (1 / 3)
+    walls = vat.area + 4.0 * math.sqrt(vat.area) * vat.height
+    spacing = max((volume / PARTICLES) ** (1 / 3), math.sqrt(LAYERS * walls / WALLS))
     widths: dict[str, float] = {}
     if hole is not None:
         widths["drain"] = hole.width or min(HOLE, 0.35 * math.sqrt(vat.area))
