@@ -126,22 +126,26 @@ def test_a_tap_raises_the_level_of_a_tank_by_its_volume_over_the_area(depth):
 
 
 @pytest.mark.parametrize(
-    ("mouth", "way"), [((0.0, 0.0, 0.04), (0.0, 0.0, 1.0)), ((-0.02, 0.0, 0.1), (1.0, 0.0, 0.3))], ids=["up", "aslant"]
+    ("mouth", "way"),
+    [((0.0, 0.0, 0.0), (0.0, 0.0, 1.0)), ((0.0, 0.0, 0.04), (0.0, 0.0, 1.0)), ((-0.02, 0.0, 0.1), (1.0, 0.0, 0.3))],
+    ids=["floor", "up", "aslant"],
 )
 def test_a_tap_under_water_raises_the_level_by_what_it_pours(mouth, way):
-    """Its pipe stands in the water, and through the floor: none gets into it, and none into less room beside it."""
+    """Its pipe is in the floor, or partly, or in the water: none gets into it, none is pressed into less room by it."""
     radius = 0.05
-    tap = Tap(mouth, way, rate=0.004, radius=radius, times=(0.8,), rates=(0.0,))
+    tap = Tap(mouth, way, rate=0.004, radius=radius, times=(1.0,), rates=(0.0,))
     flow = Flow(0.15, (tap,), fast=2.5)
-    flow.go(1.3)
+    flow.go(1.4)
     place, _ = flow.free()
     assert flow.solver.check(flow.state) == 0
     assert not flow.in_pipes((tap,), place, -0.01 * STEP).any()
+    assert np.sum(place[:, 2] < 0.04 * STEP) < 10  # on the floor; where they are pressed onto it some 50
     assert flow.unaccounted() < 1e-6
     depth = depth_of(tap, flow.config, STEP**3)
     in_tank = min(depth, mouth[2]) if mouth[0] == 0.0 else depth  # of the pipe, under the surface all along
     expected = flow.held() / RHO / 0.09 + math.pi * radius**2 * in_tank / 0.09
-    top = np.sort(place[:, 2])[-40:].mean() + STEP / 2
+    layer = round(0.09 / STEP**2)
+    top = np.sort(place[:, 2])[-layer:].mean() + STEP / 2
     assert top == pytest.approx(expected, abs=0.4 * STEP)
 
 

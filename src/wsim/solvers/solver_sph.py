@@ -369,6 +369,8 @@ class SolverSPH(SolverBase):
                 inputs=[*method, gravity, fluid, walls],
                 outputs=[search.walls.motion],
             )
+            if self.openings:
+                self.openings.press_walls(self.method, search.walls, dt)
         launch_shared(
             self.programs.continuity,
             dim=self.fluid_count,
@@ -380,7 +382,7 @@ class SolverSPH(SolverBase):
                 self.programs.fill,
                 dim=self.fluid_count,
                 inputs=[*method, gravity, fluid],
-                outputs=[self.pressure],
+                outputs=[self.pressure, self.full],
             )
         wp.launch(
             density_kernels.set_pressure,

@@ -10,7 +10,7 @@ import warp as wp
 
 from wsim.kernels.sph import openings as kernels
 from wsim.kernels.sph.grid import PARKED
-from wsim.kernels.sph.pipes import keep_out_of_pipes
+from wsim.kernels.sph.pipes import keep_out_of_pipes, press_walls
 from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.sph_mouths import Drain, Tap, beside, in_pipe, layer_of, layers_of, local, placed, places_of
 from wsim.solvers.sph_opening_arrays import drains_of, taps_of
@@ -188,6 +188,16 @@ class Openings:
                 dim=len(position),
                 inputs=[particle_world, self._model.particle_mass, position, self.drains],
                 outputs=[self.stage, self.tally],
+            )
+
+    def press_walls(self, method: Any, walls: Any, dt: float) -> None:
+        """Count layers that begin in pipes into what sorted walls give back; arguments as of `lead`."""
+        if self.pipes and walls.count:
+            wp.launch(
+                press_walls,
+                dim=walls.count,
+                inputs=[method, self.taps, self._travel, dt, walls.species],
+                outputs=[walls.motion],
             )
 
     def lead(self, method: Any, fluid: Any, state: Any, on_walls: wp.array, dt: float) -> None:

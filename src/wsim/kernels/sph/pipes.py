@@ -28,10 +28,14 @@ def make_fill(sums: PairSums) -> wp.Kernel:
         rest_density: wp.array(dtype=float),
         gravity: wp.array(dtype=wp.vec3),
         fluid: Species,
-        # Data in and out:
+        # Data out:
         pressure: wp.array(dtype=float),
+        full: wp.array(dtype=float),
     ):
-        """p = sum p_f + rho_0 g.(x - x_f) W / sum W over free water f; 0 where there is none. In sorted order."""
+        """p = sum p_f + rho_0 g.(x - x_f) W / sum W over free water f; 0 where there is none. In sorted order.
+
+        No void is beside it: a pipe goes on.
+        """
         s = first + wp.tid()
         i = fluid.order[s]
         if fluid.stage[i] <= FREE:
@@ -41,6 +45,7 @@ def make_fill(sums: PairSums) -> wp.Kernel:
         weight = rest_density[world] * gravity[world]
         x, at_rest = wp.vec3(p[0], p[1], p[2]), wp.vec3(0.0, 0.0, 0.0)
         total = of_free(grid, fluid, fluid, s, world, method.shape, x, at_rest, 0.0, weight)
+        full[i] = 1.0
         pressure[s] = 0.0
         if total[0] > 0.0:
             pressure[s] = wp.max(total[1] / total[0], -method.background_pressure)
@@ -94,6 +99,38 @@ def _supplied(taps: Taps, t: int, method: Method, own: wp.vec3) -> float:
             w = wp.max(1.0 - u, 0.0)
             total += norm * w * w * w * w * (1.0 + 4.0 * u)
     return total
+
+
+@wp.kernel(enable_backward=False)
+def press_walls(
+    # Data in:
+    method: Method,
+    taps: Taps,
+    travel: wp.array(dtype=wp.float64),
+    dt: float,
+    walls: Species,
+    # Data in and out:
+    motion: wp.array(dtype=wp.vec4),
+):
+    """Count the layers that begin in pipes into what walls near them give back (`boundary.compress`).
+
+    As of the water behind a pipe's end (`keep_out_of_pipes`): what runs draws away from the wall there, and what
+    follows is there at once. Left out, walls would take that back from the free water for as long as the tap runs.
+    """
+    s = wp.tid()
+    m = motion[s]
+    around = walls.facing[s][3]  # sum W, of the last step
+    if m[3] == 0.0 or around <= 0.0:
+        return
+    p = walls.point[s]
+    world = walls.world[walls.order[s]]
+    pressed = float(0.0)
+    for t in range(taps.tap_first[world], taps.tap_first[world + 1]):
+        if taps.depth[t] > 0.0:
+            own = wp.transform_point(wp.transform_inverse(taps.pose[t]), wp.vec3(p[0], p[1], p[2]))
+            volume = float(taps.layer[t] * taps.area[t]) / float(taps.place_first[t + 1] - taps.place_first[t])
+            pressed += volume * float(travel[t] / taps.layer[t]) / dt * _supplied(taps, t, method, own)
+    motion[s] = wp.vec4(m[0], m[1], m[2], m[3] + p[3] * pressed / around)
 
 
 @wp.kernel(enable_backward=False)
