@@ -54,6 +54,20 @@ def test_one_liquid_takes_nothing_for_several(tmp_path: Path) -> None:
     assert getattr(build_model(stage, world, "cpu").model.sph, "liquid_density", None) is None
 
 
+def test_what_yields_has_its_law_and_a_step_that_holds_it(tmp_path: Path) -> None:
+    steps = {}
+    for name, told in (("plain", {}), ("mud", {"yield_stress": 60.0, "flow_index": 0.8})):
+        world = describe(stage := stage_of(tmp_path, 1000.0, name, viscosity=0.5, **told))
+        built = build_model(stage, world, "cpu")
+        steps[name] = built.time_step.dt
+        if name == "mud":
+            water, mud = (built.fluids[0][f"/World/{each}"] for each in ("water", "oil"))
+            stress, index = built.model.sph.yield_stress.numpy(), built.model.sph.flow_index.numpy()
+            assert (stress[mud] == 60.0).all() and (stress[water] == 0.0).all()
+            assert index[mud] == pytest.approx(0.8) and (index[water] == 1.0).all()
+    assert steps["mud"] == pytest.approx(0.25 * steps["plain"], rel=0.1)
+
+
 def test_liquids_of_different_spacing_are_refused(tmp_path: Path) -> None:
     world = describe(stage := stage_of(tmp_path, 900.0, spacing=0.02))
     with pytest.raises(UserError, match=r"/World/oil: spacing = 0.02 differs from the 0.03 of /World/water"):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from pxr import Gf, Sdf, UsdGeom
 
-from wsim.limits import MAX_SIZE, MIN_SIZE
+from wsim.limits import LEAST_ACROSS, MAX_FLOW_INDEX, MAX_SIZE, MAX_YIELD_STRESS, MIN_FLOW_INDEX, MIN_SIZE
 from wsim.scene import schema
 from wsim.scene.authoring import Handle, note_line, set_extent, set_pose
 from wsim.scene.materials import Look, Material, bind
@@ -56,6 +56,8 @@ class Fluids(Tanks):
         velocity: Sequence[float] = (0.0, 0.0, 0.0),
         density: float = 1000.0,
         viscosity: float = 0.001,
+        yield_stress: float = 0.0,
+        flow_index: float = 1.0,
         speed_of_sound: float = 0.0,
         color: Sequence[float] = _WATER,
         attenuation_length: float | None = None,
@@ -75,7 +77,10 @@ class Fluids(Tanks):
             container: The tank that box stands in; found by itself where the box lies inside one.
             velocity: That all of it starts with, in the world [m/s].
             density: Rest density [kg/m^3]; fluids of several densities go side by side, as oil of 900 and water do.
-            viscosity: Dynamic viscosity [Pa s]; water 0.001, honey 10.
+            viscosity: Dynamic viscosity [Pa s]; water 0.001, honey 10. Of what yields or thins the consistency k.
+            yield_stress: Shear stress below which it stands [Pa], tau = tau_y + k rate^n (Herschel & Bulkley): paint 5,
+                ketchup 15, mud 50, toothpaste 200.
+            flow_index: n of that law, 0.1 to 2: 1 as of water, honey and Bingham's liquids; below 1 shear thins it.
             speed_of_sound: Numerical, of weakly compressible SPH [m/s]; 0 lets the solver choose.
             color: Linear RGB.
             attenuation_length: How clear it is: the way through it after which 1/e of the light is left [m], and has
@@ -84,7 +89,7 @@ class Fluids(Tanks):
 
         Raises:
             SceneError: If the fluid does not fit what it fills, that has no hollow, it is thinner than one particle or
-                overlaps another fluid, or a number is out of range.
+                overlaps another fluid, a tank is less than four particles across, or a number is out of range.
         """
         call = Call("fluid", name)
         path = self._path(call)
@@ -115,6 +120,14 @@ class Fluids(Tanks):
         values = {
             "density": (Sdf.ValueTypeNames.Double, call.density(density)),
             "viscosity": (Sdf.ValueTypeNames.Double, call.within("viscosity", viscosity, 0.0, 1e6, "Pa s")),
+            "yieldStress": (
+                Sdf.ValueTypeNames.Double,
+                call.within("yield_stress", yield_stress, 0.0, MAX_YIELD_STRESS, "Pa"),
+            ),
+            "flowIndex": (
+                Sdf.ValueTypeNames.Double,
+                call.within("flow_index", flow_index, MIN_FLOW_INDEX, MAX_FLOW_INDEX, ""),
+            ),
             "spacing": (Sdf.ValueTypeNames.Double, step),
             "size": (Sdf.ValueTypeNames.Float3, Gf.Vec3f(*edges)),
             "velocity": (Sdf.ValueTypeNames.Float3, Gf.Vec3f(*call.velocity(velocity))),
@@ -168,7 +181,7 @@ class Fluids(Tanks):
         prim = self._find(call, "fills", fills)
         tank = self._tanks.get(str(prim.GetPath()))
         if tank is not None:
-            _check_thickness(call, tank.inner_size, spacing, "inner_size", f'tank "{tank.name}"')
+            _check_coarse(call, tank, spacing)
             return tank.path, *_filling(call, tank, self._topmost(tank), level, volume), None
         from wsim.scene.vessels import Vessel  # with pydantic, and few programs fill another vessel
 
@@ -247,6 +260,15 @@ def _check_thickness(call: Call, size: Vec3, spacing: float, field: str, what: s
         call.fail(
             f"spacing = {spacing:g} m is wider than {what}: its {field}, least edge {thinnest:g} m, must hold at "
             f"least one particle; take spacing <= {thinnest / 4:.3g}"
+        )
+
+
+def _check_coarse(call: Call, tank: Tank, spacing: float) -> None:
+    least = min(tank.inner_size)
+    if least < LEAST_ACROSS * spacing * (1.0 - 1e-9):
+        call.fail(
+            f'spacing = {spacing:g} m is too coarse for tank "{tank.name}": its inner_size, least edge {least:g} m, '
+            f"must hold {LEAST_ACROSS} particles; take spacing <= {least / LEAST_ACROSS:.3g}, or a larger tank"
         )
 
 

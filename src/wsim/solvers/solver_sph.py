@@ -75,7 +75,8 @@ class SolverSPH(SolverBase):
 
         `sph:pressure` [Pa] is a state variable of each particle, p = c^2 (rho - rho_0). `sph:rest_density` [kg/m^3]
         and `sph:viscosity` [Pa s] belong to a world; 0 takes the `Config`'s. With `several_liquids` each particle has
-        `sph:liquid_density` and `sph:liquid_viscosity`, too; where its density is 0 it is of the world's.
+        `sph:liquid_density` and `sph:liquid_viscosity`, too; where its density is 0 it is of the world's. With
+        `sph:yield_stress` [Pa] or `sph:flow_index` it yields, and the viscosity is its consistency [Pa s^n].
         """
         frequency, assignment = newton.Model.AttributeFrequency, newton.Model.AttributeAssignment
         for name, of, where in (
@@ -152,7 +153,7 @@ class SolverSPH(SolverBase):
     def _read_liquids(self) -> None:
         """What each particle is of, where a world has several liquids."""
         worlds = self.rest_density.numpy(), self.viscosity.numpy()
-        self.liquids = Liquids(self.model, self._fluid_world, *worlds) if has_liquids(self.model) else None
+        self.liquids = Liquids(self.model, self.config, self._fluid_world, *worlds) if has_liquids(self.model) else None
 
     def at_rest(self, world: int) -> np.ndarray:
         """Density at rest [kg/m^3]: a world's, (), or where it has several liquids that of each particle, (n,)."""
@@ -246,6 +247,8 @@ class SolverSPH(SolverBase):
         self.push.forget()
         self.full.zero_()
         self.skins.forget()
+        if self.liquids:
+            self.liquids.forget()
 
     def restart(self) -> None:
         """Begin anew, with a state from before the first step: what waits for taps waits again."""
@@ -372,6 +375,13 @@ class SolverSPH(SolverBase):
             inputs=[*method, gravity, fluid, walls, bodies, dt],
             outputs=[self.pressure, self.full],
         )
+        if self.openings and self.openings.pipes:
+            launch_shared(
+                self.programs.fill,
+                dim=self.fluid_count,
+                inputs=[*method, gravity, fluid],
+                outputs=[self.pressure],
+            )
         wp.launch(
             density_kernels.set_pressure,
             dim=self.fluid_count,
@@ -391,6 +401,8 @@ class SolverSPH(SolverBase):
         search = self.search
         fluid, walls, bodies = (kind.species for kind in (search.fluid, search.walls, search.bodies))
         method = [search.grid, self.method, self.rest_density, self.viscosity]
+        if self.liquids:
+            self.liquids.shear(search, self.method)
         self.push.sum(self.method, self.rest_density, self.viscosity, self.model.gravity)
         launch_shared(
             self.programs.momentum,
@@ -406,8 +418,8 @@ class SolverSPH(SolverBase):
         if self.skins.count:
             self.skins.keep_out(search.fluid, dt, state_out, state_in, self._on_walls)
         if self.openings:
-            self.openings.lead(search.fluid, state_out, self._on_walls, dt)
+            self.openings.lead(self.method, search.fluid, state_out, self._on_walls, dt)
         if len(self._on_walls):
             self._wall_impulse.add(self._on_walls, dt)
-            if self.bodies.count:
+            if len(self.push.on_walls):
                 self._wall_impulse.add(self.push.on_walls, dt, self.push.world_first)

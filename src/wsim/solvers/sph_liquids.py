@@ -1,4 +1,4 @@
-"""The liquids of a world that has several: what each particle of an SPH fluid is of."""
+"""The liquids of a world that has several, or one that yields: what each particle of an SPH fluid is of."""
 
 from __future__ import annotations
 
@@ -9,14 +9,18 @@ import numpy as np
 import warp as wp
 
 from wsim.kernels.sph.liquids import gather_liquids
+from wsim.solvers.launch import launch_shared
+from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.sph_particles import SortedParticles
+from wsim.solvers.sph_search import ParticleSearch
 
 Array = np.ndarray
-NUMBERS = ("liquid_density", "liquid_viscosity")
+NUMBERS = ("liquid_density", "liquid_viscosity", "yield_stress", "flow_index")
 
 
 def register_liquids(builder: newton.ModelBuilder) -> None:
-    """Let each particle have its own `sph:liquid_density` [kg/m^3] and `sph:liquid_viscosity` [Pa s]."""
+    """Let each particle have its own liquid: `sph:liquid_density` [kg/m^3], `sph:liquid_viscosity` [Pa s],
+    `sph:yield_stress` [Pa] and `sph:flow_index`, 0 for 1."""
     of, model = newton.Model.AttributeFrequency.PARTICLE, newton.Model.AttributeAssignment.MODEL
     for name in NUMBERS:
         builder.add_custom_attribute(
@@ -37,21 +41,23 @@ class Liquids:
 
     Args:
         model: With what `register_liquids` has put there; a density of 0 takes the world's density and viscosity.
+        config: For the largest viscosity of what yields.
         world: Of each particle, (n,).
         rest_density: Of each world [kg/m^3], (W,).
         viscosity: Of each world [Pa s], (W,).
 
     Attributes:
-        numbers: Density and viscosity of each (n,), in original order.
+        numbers: Density and viscosity of each (n,), in original order; the viscosity of what yields is the last step's.
         density: The densities, (n,) [kg/m^3].
+        yields: Whether any is not Newtonian.
 
     Raises:
         ValueError: If a number is negative or not finite.
     """
 
-    def __init__(self, model: Any, world: Array, rest_density: Array, viscosity: Array) -> None:
-        density, own = (getattr(model.sph, name).numpy().astype(np.float32) for name in NUMBERS)
-        for name, values in zip(NUMBERS, (density, own), strict=True):
+    def __init__(self, model: Any, config: ConfigSPH, world: Array, rest_density: Array, viscosity: Array) -> None:
+        density, own, stress, index = (getattr(model.sph, name).numpy().astype(np.float32) for name in NUMBERS)
+        for name, values in zip(NUMBERS, (density, own, stress, index), strict=True):
             wrong = np.flatnonzero(~(np.isfinite(values) & (values >= 0.0)))
             if len(wrong):
                 raise ValueError(
@@ -59,8 +65,18 @@ class Liquids:
                 )
         given = density > 0.0
         density, own = np.where(given, density, rest_density[world]), np.where(given, own, viscosity[world])
-        self.density: Array = density.astype(np.float32)
-        self.numbers = wp.array(np.stack([density, own], axis=1).astype(np.float32), dtype=wp.vec2)
+        index = np.where(index > 0.0, index, 1.0)
+        plain = (stress == 0.0) & (index == 1.0)
+        self.yields, self.density = not plain.all(), density.astype(np.float32)
+        largest = np.where(plain, own, config.largest_viscosity_of(density, own))
+        at_rest = np.where(plain, own, largest)
+        self.law = wp.array(np.stack([own, stress, index, largest], axis=1).astype(np.float32), dtype=wp.vec4)
+        self.numbers = wp.array(np.stack([density, at_rest], axis=1).astype(np.float32), dtype=wp.vec2)
+        self._start = wp.clone(self.numbers)
+
+    def forget(self) -> None:
+        """Be as viscous as at rest."""
+        wp.copy(self.numbers, self._start)
 
     def gather(self, fluid: SortedParticles, mass: wp.array, speed_of_sound: float) -> None:
         """Bring them into the particles' present order, whose positions and pressures are there, with the volumes."""
@@ -69,4 +85,16 @@ class Liquids:
             dim=fluid.count,
             inputs=[fluid.order, self.numbers, mass, speed_of_sound],
             outputs=[fluid.motion, fluid.point, fluid.liquid],
+        )
+
+    def shear(self, search: ParticleSearch, method: Any) -> None:
+        """Find the viscosity of what yields at the rate that it is sheared with, between solids as they move."""
+        if not self.yields:
+            return
+        fluid, walls, bodies = (kind.species for kind in (search.fluid, search.walls, search.bodies))
+        launch_shared(
+            search.programs.yields,
+            dim=search.fluid.count,
+            inputs=[search.grid, method, self.law, fluid, walls, bodies],
+            outputs=[self.numbers, search.fluid.liquid],
         )

@@ -10,6 +10,7 @@ import numpy as np
 from wsim.judge.books.fluids import fluid_impulse
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.evidence.containment import local
+from wsim.judge.evidence.layers import layers, mass_displaced
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
@@ -37,7 +38,8 @@ class CheckBuoyancy(Check):
     """What lies or is held still in a fluid at rest is lifted by the weight of what it displaces.
 
     A body that hangs free is asked by `CheckDraft`: there the lift is its weight, whatever it displaces. One that lies
-    on the floor, or is held, shows what the fluid gives it: water that presses down what is lighter is no water.
+    on the floor, or is held, shows what the fluid gives it: water that presses down what is lighter is no water. Of
+    liquids on each other it displaces its share of each; one that yields holds what lies in it.
     """
 
     share: float = 0.2  # of the lift: boxes flush with a floor get up to 14 % too little (docs/sph.md)
@@ -47,10 +49,12 @@ class CheckBuoyancy(Check):
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """The force on each such body over the final window."""
         pushed, found = _pushed(evidence), []
-        if pushed is None or len(evidence.world.fluids) > 1:
+        if pushed is None:
             return []
         for fluid in evidence.world.fluids:
-            if evidence.container_of(fluid) is None or not self._rests(evidence, fluid):
+            if evidence.container_of(fluid) is None or (stack := layers(evidence, fluid))[0] is not fluid:
+                continue
+            if not all(each.newtonian and self._rests(evidence, each) for each in stack):
                 continue
             for i in range(len(evidence.world.bodies)):
                 if self._lies(evidence, fluid, i):
@@ -73,17 +77,18 @@ class CheckBuoyancy(Check):
         half = np.array(container.inner_size)[:2] / 2
         inside = (np.abs(local(container, motion.com[-1, i])[:2]) < half).all()
         low, high = (float(ends[here].mean()) for ends in evidence.ends(i))
-        level = evidence.level(fluid)
+        level, surface = evidence.level(fluid), evidence.level(layers(evidence, fluid)[-1]).height
         # The surface is not known well enough for what pierces it.
-        return bool(inside and low > level.floor - fluid.spacing and high < level.height - fluid.spacing)
+        return bool(inside and low > level.floor - fluid.spacing and high < surface - fluid.spacing)
 
     def _lifted(self, evidence: Evidence, fluid: Fluid, i: int, value: float) -> Finding:
-        solid, (_, rotation) = evidence.solid(i), evidence.resting_pose(i)
+        solid, (position, rotation) = evidence.solid(i), evidence.resting_pose(i)
         volume = solid.volume
+        held = mass_displaced(evidence, fluid, lambda z: solid.volume_below(rotation, float(position[2]), z))
         reaches = [solid.reach(rotation[None], axis) for axis in np.eye(3)[:2]]
         area = float(np.prod([high - low for low, high in reaches]))
         weight = fluid.density * evidence.gravity
-        expected, slack = weight * volume, weight * (self.share * volume + self.layers * fluid.spacing * area)
+        expected, slack = held * evidence.gravity, weight * (self.share * volume + self.layers * fluid.spacing * area)
         prim = evidence.world.bodies[i].prim
         return self.between(
             f"{fluid.prim} lifts {prim}, which lies in it at rest, by {value:.4g} N; what it displaces weighs "

@@ -76,7 +76,7 @@ class CheckFluidMass(Check):
         for shape in (shape for static in evidence.world.statics for shape in static.shapes if shape.collides):
             reach = 0.5 * float(np.linalg.norm(size)) + fluid.spacing
             own = fluid.container is not None and within(shape.prim, fluid.container)  # it ends at its tank's walls
-            if own or shape.kind == "plane" or _beside(shape, middle, reach):
+            if own or (shape.kind != "plane" and _beside(shape, middle, reach)):
                 continue
             depth = np.maximum(depth, kind_of(shape).depth(into(shape, places)))
         cell = float(size.prod()) / len(places)
@@ -118,6 +118,7 @@ class CheckPlanFluid(Check):
         for item, fluid in known:
             found += [*self._density(fluid, item), *self._viscosity(fluid, item), *self._level(evidence, fluid, item)]
             found += [*self._block(fluid, item), *self._velocity(fluid, item), *self._vessel(evidence, fluid, item)]
+            found += self._law(fluid, item)
         return found or ([self.passed("Fluids are of the plan's density, viscosity and level")] if known else [])
 
     def _viscosity(self, fluid: Fluid, item: PlanObject) -> list[Finding]:
@@ -134,6 +135,24 @@ class CheckPlanFluid(Check):
                 limit_from=f"the plan's, or water's where it has none, to {self.share:.0%}", target=target
             )
         ]  # fmt: skip
+
+    def _law(self, fluid: Fluid, item: PlanObject) -> list[Finding]:
+        """What yields or thins does so as the plan has it."""
+        found = []
+        for name, unit in (("yield_stress", "Pa"), ("flow_index", "1")):
+            planned, own = getattr(item.registration, name), getattr(fluid, name)
+            if planned is None or abs(own - planned) <= max(self.share * planned, 1e-9):
+                continue
+            target = RepairTarget(kind="fluid", prim=fluid.prim, parameter=name, suggested=planned, unit=unit)
+            words = name.replace("_", " ")
+            found.append(
+                self.between(
+                    f"{fluid.prim} has a {words} of {own:.4g} {unit}; the plan has {planned:.4g} {unit}",
+                    own, share_about(planned, self.share), unit, expected=planned, prim=fluid.prim, time=0.0,
+                    limit_from=f"the plan's, to {self.share:.0%}", target=target,
+                )
+            )  # fmt: skip
+        return found
 
     def _block(self, fluid: Fluid, item: PlanObject) -> list[Finding]:
         """What stands as a block of its own is as large and where the plan has it."""

@@ -132,7 +132,9 @@ class CheckDraft(Check):
         late = evidence.last(0.5)
         for fluid in evidence.world.fluids:
             container = evidence.container_of(fluid)
-            if container is None or layers(evidence, fluid)[0] is not fluid:  # of each container once
+            if container is None or (stack := layers(evidence, fluid))[0] is not fluid:  # of each container once
+                continue
+            if not all(each.newtonian for each in stack):  # one that yields holds what hangs in it
                 continue
             half = np.array(container.inner_size)[:2] / 2
             for i, body in enumerate(evidence.world.bodies):

@@ -194,6 +194,21 @@ _OF_LIQUIDS = (
     EXTRAPOLATED_LIQUIDS,
 )
 
+_FREE = (
+    """
+    const int* __restrict__ orders = other.order.data;
+    const int* __restrict__ stages = other.stage.data;
+    const float w0 = common[0], w1 = common[1], w2 = common[2];
+    float total = 0.0f, pressure = 0.0f;
+    """,
+    """
+            const float w = stages[orders[j]] == 0 ? t2 * t2 * (1.0f + 4.0f * u) : 0.0f;
+            total += w;
+            pressure += w * (n.w + w0 * d0 + w1 * d1 + w2 * d2);
+    """,
+    "return wp::vec_t<2, float>(total, pressure);",
+)
+
 _MOMENTUM = (
     """
     const float v0 = v[0], v1 = v[1], v2 = v[2];
@@ -228,6 +243,17 @@ _MOMENTUM_AT_WALLS = (
     sums[4] = n0, sums[5] = n1, sums[6] = n2;
     return sums;
     """,
+)
+
+_SHEAR = (
+    "const float v0 = v[0], v1 = v[1], v2 = v[2], eta2 = common[2]; float rate = 0.0f, filled = 0.0f;",
+    """
+            const float approach = (v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2;
+            const float slope = q.w * (t2 * t);
+            rate += slope * approach * approach / (r2 + eta2);
+            filled += slope * r2;
+    """,
+    "return wp::vec_t<2, float>(-slope_norm * rate, -slope_norm * filled);",
 )
 
 _FIND = """
@@ -265,6 +291,7 @@ class PairSums:
             density diffusion over those that hand on a pressure in a gap.
         flux: `Flux`, over fluid around what stands still.
         extrapolation: `Extrapolated`, over fluid.
+        free: Sums of W and of W times pressure, over fluid that no opening leads.
         force: Force on a particle of fluid per volume, over fluid or bodies.
         force_on_solid: Force on a particle of a solid per volume, over fluid.
         force_at_walls: `AtWalls`, over walls.
@@ -272,6 +299,7 @@ class PairSums:
         force_in_gap: `Gap`, over walls or bodies. Takes the particle's pressure and the least that there is as v, the
             weight of the fluid as `common`.
         gradient: Sum of V grad W, over fluid.
+        shear: Sums of -V_j (v_ij.x_ij)^2 / r^2 dW/dr / r and of -V_j x_ij.grad W, over each kind.
         seeping: Sums of W and of W times pressure, and the fewest hops, over what its own body's particles hand on.
         find: Write the neighbours of one kind behind `start` others, but `itself`; returns how many there are then.
             For lists alone.
@@ -284,12 +312,14 @@ class PairSums:
     continuity_at_bodies: wp.Function
     flux: wp.Function
     extrapolation: wp.Function
+    free: wp.Function
     force: dict[int, wp.Function]
     force_on_solid: wp.Function
     force_at_walls: wp.Function
     way: dict[int, wp.Function]
     force_in_gap: dict[int, wp.Function]
     gradient: wp.Function
+    shear: dict[int, wp.Function]
     seeping: wp.Function
     find: wp.Function
     several: bool
@@ -367,6 +397,7 @@ def make_pair_sums(
         continuity_at_bodies=total(_CONTINUITY_AT_BODIES, wp.vec4, BODIES),
         flux=total(_FLUX, Flux, FLUID, in_solids),
         extrapolation=total(*(_OF_LIQUIDS if several else (_EXTRAPOLATION, Extrapolated)), FLUID, in_solids),
+        free=total(_FREE, wp.vec2),
         force={
             kind: total(_MOMENTUM, wp.vec3, kind, among if kind == FLUID else at_solids) for kind in (FLUID, BODIES)
         },
@@ -375,6 +406,7 @@ def make_pair_sums(
         way={kind: total(between(WAY, words), wp.vec3, kind) for kind, words in ACROSS.items()},
         force_in_gap={kind: total(between(GAP, words), Gap, kind) for kind, words in ACROSS.items()},
         gradient=total(GRADIENT, wp.vec3),
+        shear={kind: total(_SHEAR, wp.vec2, kind) for kind in (FLUID, WALLS, BODIES)},
         seeping=total(SEEPING, wp.vec3, BODIES),
         find=find,
         several=several,

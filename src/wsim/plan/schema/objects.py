@@ -77,6 +77,8 @@ class Registration(Strict):
     spacing: Positive | None = None  # of a fluid's particles [m]
     viscosity: NotNegative | None = None  # of a fluid [Pa s]
     volume: Positive | None = None  # of a fluid in a vessel, where no level is said [m^3]
+    yield_stress: NotNegative | None = None  # of a fluid [Pa]: mud, paint, toothpaste
+    flow_index: Positive | None = None  # of a fluid: below 1 it thins when sheared
     actuation: list[Actuation] = Field(default_factory=list, max_length=100)
 
     @model_validator(mode="after")

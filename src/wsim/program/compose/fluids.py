@@ -46,6 +46,9 @@ def arguments(draft: Draft, item: PlanObject) -> list[str]:
         found.append(f"velocity={tuple_of(item.velocity)}")
     if item.registration.viscosity is not None:
         found.append(f"viscosity={number(item.registration.viscosity)}")
+    for name in ("yield_stress", "flow_index"):
+        if (value := getattr(item.registration, name)) is not None:
+            found.append(f"{name}={number(value)}")
     if any(objective.kind == "fills" and objective.object == item.name for objective in plan.objectives):
         found.append(f"speed_of_sound={number(_sound(item))}")
     if item.density is not None:
