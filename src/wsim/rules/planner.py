@@ -40,10 +40,11 @@ from wsim.rules.scenes.part import Part, tidy
 from wsim.rules.scenes.patrol import build_patrol
 from wsim.rules.scenes.pendulum import build_pendulums
 from wsim.rules.scenes.pour import build_pour
+from wsim.rules.scenes.rain import build_rain
 from wsim.rules.scenes.seesaw import build_seesaws
 from wsim.rules.scenes.tank import build_tank
 from wsim.rules.scenes.timed import hold
-from wsim.rules.scenes.vessel import LASTS, add_liquid
+from wsim.rules.scenes.vessel import LASTS, add_liquid, look_in
 from wsim.rules.steps import steps
 from wsim.rules.ties import tied_to
 from wsim.rules.tokens import NotUnderstood
@@ -86,13 +87,14 @@ def plan(prompt: str) -> Plan:
     _hang(scene, placed, cast)
     ties = {"joints": scene.joints, "cords": scene.cords, "schedules": scene.schedules}
     whole = set_down(Plan(objects=[*placed.objects, *scene.posed], **ties, **common))
+    inside = [look_in(whole.object(scene.names[id(vessel)][-1]))] if vessel is not None else []
     made = tied(
         Plan.model_validate(
             {
                 **whole.model_dump(),
                 "contacts": [*scene.contacts, *contacts(cast, scene.names, whole)],
                 "objectives": as_they_are(scene.objectives, whole.objects),
-                "cameras": scene.cameras or cameras(whole, above=scene.surface, goes=scene.goes),
+                "cameras": scene.cameras or [*cameras(whole, above=scene.surface, goes=scene.goes), *inside],
                 "steps": steps(whole),
                 "assumptions": cast.assumptions,
             }
@@ -120,7 +122,7 @@ def _scene(cast: Cast) -> Part:
     for build in (build_inclines, build_carried, build_seesaws):
         for made in build(cast, taken):
             scene.add(made.shifted(_free(scene, made)))
-    for alone in (build_pour, build_flowing, build_patrol, build_drive):
+    for alone in (build_pour, build_flowing, build_rain, build_patrol, build_drive):
         scene.add(alone(cast, taken))
     if any(thing.place == "ground" and id(thing) not in scene.names for thing in cast.things) and not (
         cast.pour or cast.flows

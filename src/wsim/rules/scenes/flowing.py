@@ -65,14 +65,10 @@ def build_flowing(cast: Cast, taken: set[str]) -> Part:
     Raises:
         UserError: Something else is in the scene, or more comes in than it holds.
     """
-    if not cast.flows:
+    if not cast.flows or any(flow.kind == "rain" for flow in cast.flows):
         return Part()
     if cast.pour is not None:
         raise UserError("the builtin planner pours a block of liquid or lets one run, not both; say how it comes in")
-    if any(flow.kind == "rain" for flow in cast.flows):
-        from wsim.rules.scenes.rain import build_rain
-
-        return build_rain(cast, taken)
     tap = next((flow for flow in cast.flows if flow.kind == "tap"), None)
     hole = next((flow for flow in cast.flows if flow.kind == "drain"), None)
     check_alone(cast, tap.vessel if tap is not None else None)

@@ -32,7 +32,12 @@ def build_rain(cast: Cast, taken: set[str]) -> Part:
     Raises:
         UserError: Something else is in the scene, or too little or too much falls.
     """
-    [rain, *others] = cast.flows
+    rain = next((flow for flow in cast.flows if flow.kind == "rain"), None)
+    others = [flow for flow in cast.flows if flow is not rain]
+    if rain is None:
+        return Part()
+    if cast.pour is not None:
+        raise UserError(f"{rain.words!r}: the builtin planner lets it rain or pours a liquid, not both")
     if others:
         raise UserError(f"{others[0].words!r}: the builtin planner lets it rain, and nothing else run in or out")
     check_alone(cast, rain.on, rain.vessel)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from wsim.assets import get
 from wsim.errors import UserError
-from wsim.plan.schema import FromAsset, Objective, PlanObject, Relation
+from wsim.plan.layout.bodies import around
+from wsim.plan.schema import CameraPlan, FromAsset, Objective, PlanObject, Relation
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.contents import note_liquid
 from wsim.rules.scenes.part import Part, tidy
@@ -20,6 +22,7 @@ MOST = 0.95  # of the same, that the prompt may ask for
 PARTICLES, MOST_PARTICLES = 4000, 30_000
 DEEP, ACROSS = 4, 6  # spacings, at least
 LASTS = 2.0  # [s]
+NEAR, DOWN = 3.0, 50.0  # of the camera: times the vessel's largest edge away, and how far it looks down [deg]
 GRID = 30  # spacings in a vessel, with which its hollow is looked for
 
 
@@ -60,6 +63,16 @@ def add_liquid(thing: Thing | None, scene: Part, objects: list[PlanObject], cast
     still = vessel.model_copy(update={"state": "static", "role": "background"})
     made = [still if item is vessel else item for item in objects]
     return [*made, liquid]
+
+
+def look_in(vessel: PlanObject) -> CameraPlan:
+    """A view down into a vessel that has its place: what is in it is behind its walls from the side."""
+    box = around(vessel)
+    x, y, _ = box.center
+    away = NEAR * max(box.size)
+    rise, back = away * math.sin(math.radians(DOWN)), away * math.cos(math.radians(DOWN))
+    eye = (tidy(x - 0.3 * back), tidy(y - back), tidy(box.high[2] + rise))
+    return CameraPlan(name="inside", eye=eye, target=(tidy(x), tidy(y), tidy(box.high[2] - 0.3 * box.size[2])))
 
 
 def _amount(thing: Thing, asset: str, cast: Cast) -> tuple[float, float]:
