@@ -28,7 +28,7 @@ SOUND = 10.0 * math.sqrt(2.0 * G * 2.0 * DEPTH)
 
 def _add_bucket(builder: newton.ModelBuilder, wall: float) -> int:
     """Five slabs; the body's origin is in the middle of the floor's upper face."""
-    body = builder.add_body(xform=wp.transform(wp.vec3(0.0, 0.0, 0.0), wp.quat_identity()))
+    body = builder.add_body(xform=wp.transform(wp.vec3(0.0, 0.0, 0.0), wp.quat_identity()), is_kinematic=True)
     half, out, mid = 0.5 * WIDTH, 0.5 * WIDTH + wall, 0.5 * (WIDTH + wall)
     slabs = [((0.0, 0.0, -0.5 * wall), (out, out, 0.5 * wall))]
     for side in (-1.0, 1.0):

@@ -14,11 +14,13 @@ from wsim.kernels.sph import density as density_kernels
 from wsim.kernels.sph import grid as grid_kernels
 from wsim.solvers.launch import launch_shared
 from wsim.solvers.shapes import OpenBox, sample_bodies
+from wsim.solvers.sph_blows import Blows
 from wsim.solvers.sph_bodies import BodyParticles
 from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.sph_domain import domain_of
 from wsim.solvers.sph_faces import FixedFaces
 from wsim.solvers.sph_faults import in_words, inspected
+from wsim.solvers.sph_led_faces import LedFaces
 from wsim.solvers.sph_liquids import Liquids, has_liquids, register_liquids
 from wsim.solvers.sph_mouths import Drain, Tap
 from wsim.solvers.sph_openings import ROOM, Openings
@@ -183,6 +185,8 @@ class SolverSPH(SolverBase):
         plane = self.config.dimensions == 2
         self.faces = FixedFaces(model, self.world_count, containers, self.config.support, self.vessels.made_of, plane)
         self.skins = Skins(model, self.world_count, self.config.spacing, vessels)
+        self.led = LedFaces(model, self.world_count, self.config.support, self.vessels.made_of)
+        self.blows = Blows(model, self.config.spacing, self.skins.moving or self.led.count > 0)
         self._bring_into_order()
 
     def _bring_into_order(self) -> None:
@@ -322,7 +326,7 @@ class SolverSPH(SolverBase):
             self._update_pressure(state_out, dt)
             self._move_fluid(state_in, state_out, dt)
             self.bodies.push(self.search.grid, self.push.force, state_in.body_q, state_out.body_f)
-            self.skins.give_back(dt, self.body_wrench, state_out.body_f)
+            self.blows.give_back(dt, self.body_wrench, state_out.body_f)
 
     def _gather(self, state: newton.State) -> None:
         """Copy what the sums need into sorted order; walls stay as they are."""
@@ -418,7 +422,9 @@ class SolverSPH(SolverBase):
         if len(self._on_walls) and self.faces.count:
             self.faces.keep_out(worlds, dt, state_out.particle_q, state_out.particle_qd, self._on_walls)
         if self.skins.count:
-            self.skins.keep_out(search.fluid, dt, state_out, state_in, self._on_walls)
+            self.skins.keep_out(search.fluid, dt, state_out, state_in, self._on_walls, self.blows)
+        if self.led.count and self.config.dimensions == 3:
+            self.led.keep_out(search.fluid, dt, state_out, state_in, self.blows)
         if self.openings:
             self.openings.lead(self.method, search.fluid, state_out, self._on_walls, dt)
         if len(self._on_walls):

@@ -19,7 +19,7 @@ from wsim.solvers.shapes import OpenBox
 Array = np.ndarray
 SUNK = 1e-4  # [m] under a plane, at least, of the floor of a tank that is sunk into it
 CORNERS = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
-ROUND = (GeoType.SPHERE, GeoType.CAPSULE, GeoType.CYLINDER)
+ROUNDS = (GeoType.SPHERE, GeoType.CAPSULE, GeoType.CYLINDER)
 MESHES = (GeoType.MESH, GeoType.CONVEX_MESH)
 
 
@@ -58,7 +58,7 @@ class FixedFaces:
         self.count = (
             self._take_planes(fixed & (kinds == GeoType.PLANE) & (scales[:, :2] == 0.0).all(axis=1), containers)
             + self._take_boxes(self._homes(solid & (kinds == GeoType.BOX)), scales)
-            + self._take_rounds(self._homes(solid & np.isin(kinds, ROUND)), kinds, scales)
+            + self._take_rounds(self._homes(solid & np.isin(kinds, ROUNDS)), kinds, scales)
             + self._take_meshes(self._homes(solid & np.isin(kinds, MESHES)), kinds, scales)
         )
         if plane:
@@ -89,8 +89,7 @@ class FixedFaces:
 
     def _take_rounds(self, rounds: list[tuple[int, int]], kinds: Array, scales: Array) -> int:
         which = [k for _, k in rounds]
-        straight = np.where(kinds[which] == GeoType.SPHERE, 0.0, scales[which, 1])
-        sizes = np.stack([scales[which, 0], straight, kinds[which] == GeoType.CYLINDER], axis=1)
+        sizes = np.array([round_size(int(kinds[k]), scales[k]) for k in which])
         self._faces.round_first, self._faces.round = self._first(rounds), self._poses_of(which)
         self._faces.round_size = wp.array(sizes.reshape(-1, 3), dtype=wp.vec3)
         return len(rounds)
@@ -102,7 +101,7 @@ class FixedFaces:
             vertices = np.asarray(source.vertices, dtype=float).reshape(-1, 3) * scales[k]
             key = id(source), convex, *scales[k].tolist()
             if key not in self._meshes:
-                self._meshes[key] = _closed(vertices, np.asarray(source.indices).reshape(-1, 3), bool(convex))
+                self._meshes[key] = closed_mesh(vertices, np.asarray(source.indices).reshape(-1, 3), bool(convex))
             ids.append(self._meshes[key].id)
             placed = self._placed(k, vertices)
             ends.append((placed.min(axis=0), placed.max(axis=0)))
@@ -162,7 +161,7 @@ class FixedFaces:
         )
 
 
-def _closed(vertices: Array, triangles: Array, convex: bool) -> wp.Mesh:
+def closed_mesh(vertices: Array, triangles: Array, convex: bool) -> wp.Mesh:
     """The solid that a mesh stands for, for the kernel to ask."""
     solid = solid_of(vertices, triangles, convex)
     corners = wp.array(np.asarray(solid.vertices), dtype=wp.vec3)
@@ -184,3 +183,9 @@ def _prism(outline: Outline) -> tuple[wp.Mesh, Array, Array]:
     corners, triangles = np.concatenate(ends), np.concatenate(quads)
     mesh = wp.Mesh(wp.array(corners, dtype=wp.vec3), wp.array(triangles.reshape(-1), dtype=int))
     return mesh, np.array([x0, -far, z0]), np.array([x1, far, z1])
+
+
+def round_size(kind: int, scale: Array) -> Array:
+    """Radius, half the height of the straight part [m], and 1 where the ends are flat, of a round shape (3,)."""
+    straight = 0.0 if kind == GeoType.SPHERE else scale[1]
+    return np.array([scale[0], straight, float(kind == GeoType.CYLINDER)])

@@ -11,14 +11,14 @@ import trimesh
 import warp as wp
 
 from wsim.geometry.surfaces import Surface
-from wsim.kernels.sph.skins import add_blows, keep_out_of_skins
+from wsim.kernels.sph.skins import keep_out_of_skins
+from wsim.solvers.sph_blows import Blows
 from wsim.solvers.vessels import Vessel
 
 Array = np.ndarray
 NOWHERE = wp.vec3(math.nan, math.nan, math.nan)
 OVERLAP = 0.02  # spacings that the parts of a vessel reach into each other: staves that are rounded leave cracks
 STEEP = 0.3  # of a corner's normal along a face's, at least, or a needle would grow without bound
-QUANTUM = 1e-9  # of the heaviest particle's mass times the spacing per step
 
 
 def thickened(surface: Surface, by: float) -> Surface:
@@ -45,6 +45,7 @@ class Skins:
 
     Attributes:
         count: Number of skins.
+        moving: Whether any is a body's.
     """
 
     def __init__(self, model: Any, world_count: int, spacing: float, vessels: Sequence[Vessel] = ()) -> None:
@@ -63,11 +64,8 @@ class Skins:
             wp.array(np.array([ball for _, ball in made], dtype=np.float32).reshape(-1, 4), dtype=wp.vec4),
         )
         self._kept = wp.full(model.particle_count if self.count else 0, NOWHERE, dtype=wp.vec3)
-        self._moving = any(body >= 0 for _, body in keys)
-        self._pose_before = wp.zeros(model.body_count if self._moving else 0, dtype=wp.transform)
-        self._impulse = wp.zeros((model.body_count if self._moving else 0, 6), dtype=wp.int64)
-        heaviest = float(model.particle_mass.numpy().max(initial=0.0))
-        self._least = QUANTUM * heaviest * spacing  # [kg m]
+        self.moving = any(body >= 0 for _, body in keys)
+        self._pose_before = wp.zeros(model.body_count if self.moving else 0, dtype=wp.transform)
 
     def _skin(self, vessel: Vessel) -> tuple[wp.Mesh, Array]:
         """One mesh of a vessel, the same for vessels that are alike, and a ball around it."""
@@ -88,7 +86,7 @@ class Skins:
         """Forget where the particles were: they are where the next step finds them."""
         self._kept.fill_(NOWHERE)
 
-    def keep_out(self, fluid: Any, dt: float, moved: Any, state: Any, on_walls: wp.array) -> None:
+    def keep_out(self, fluid: Any, dt: float, moved: Any, state: Any, on_walls: wp.array, blows: Blows) -> None:
         """Stop what has come through since the last step.
 
         Args:
@@ -97,29 +95,20 @@ class Skins:
             moved: The state whose particles have moved, and are put back.
             state: The one that poses and velocities of the bodies are of.
             on_walls: Force on what stands still [N], added to; empty where nobody asks.
+            blows: On bodies, added to.
         """
         if not self.count:
             return
         model = self._model
-        bodies = (state.body_q, state.body_qd, model.body_com) if self._moving else (None, None, None)
+        bodies = (state.body_q, state.body_qd, model.body_com) if self.moving else (None, None, None)
         wp.launch(
             keep_out_of_skins,
             dim=model.particle_count,
             inputs=[
                 *(fluid.world, fluid.stage, model.particle_mass, *self._skins, *bodies, self._pose_before),
-                *(self._spacing, self._least / dt, dt),
+                *(self._spacing, blows.quantum(dt), dt),
             ],
-            outputs=[self._kept, moved.particle_q, moved.particle_qd, on_walls, self._impulse],
+            outputs=[self._kept, moved.particle_q, moved.particle_qd, on_walls, blows.impulse],
         )
-        if self._moving:
+        if self.moving:
             wp.copy(self._pose_before, state.body_q)
-
-    def give_back(self, dt: float, body_wrench: wp.array, body_f: wp.array) -> None:
-        """Add what bodies were given since the last call to the wrenches on them, as a force over a step of dt [s]."""
-        if self._moving:
-            wp.launch(
-                add_blows,
-                dim=len(self._impulse),
-                inputs=[self._least / dt, self._spacing, dt],
-                outputs=[self._impulse, body_wrench, body_f],
-            )

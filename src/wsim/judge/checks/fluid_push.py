@@ -42,8 +42,8 @@ class CheckFluidPush(Check):
     Frames tell the force at moments, the recording its mean between them. Sound and splashes come in between, so that
     a single interval may be anything off; the mean of many is not, and how far it may be follows from how they scatter.
 
-    Vessels are left out: their faces stop water, too, which is no sum over pairs. `CheckFluidMomentum` holds what they
-    get against what the water loses.
+    Vessels and bodies that are led are left out: their faces stop water, too, which is no sum over pairs.
+    `CheckFluidMomentum` holds what they get against what the water loses.
     """
 
     # That the mean of one stretch is farther off by chance, on one side: 4.5 standard errors of 22 pairs of intervals.
@@ -78,7 +78,7 @@ class CheckFluidPush(Check):
         given = gained / np.diff(time)[:, None, None]
         push = FluidPush(evidence, method)
         pushed = [i for i, each in enumerate(push.filled) if each is not None and given[:, i].any()]
-        bodies = [i for i in pushed if i not in push.vessels]
+        bodies = [i for i in pushed if i not in push.vessels and not evidence.world.bodies[i].kinematic]
         if not bodies:
             return []
         rows = self._rows(len(given), len(bodies))

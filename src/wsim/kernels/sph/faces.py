@@ -1,6 +1,13 @@
-"""Faces of what stands still, which no fluid gets behind however thin or far from the tank it is."""
+"""Faces of what stands still or is led, which no fluid gets behind however thin or far from the tank it is."""
 
 import warp as wp
+
+from wsim.kernels.sph.blows import count_blow, velocity_at
+from wsim.kernels.sph.openings import FREE
+
+BOX = wp.constant(0)
+ROUND = wp.constant(1)
+MESH = wp.constant(2)
 
 
 @wp.func
@@ -148,3 +155,79 @@ def keep_out(
     position[i] = x
     velocity[i] = v + stop
     on_walls[i] = on_walls[i] - mass[i] / dt * stop
+
+
+@wp.struct
+class LedFaces:
+    """Shapes of bodies that are led, those of each world, W, next to each other."""
+
+    first: wp.array(dtype=int)  # (W + 1,)
+    body: wp.array(dtype=int)
+    pose: wp.array(dtype=wp.transform)  # in the body's frame
+    kind: wp.array(dtype=int)  # BOX, ROUND or MESH
+    size: wp.array(dtype=wp.vec3)  # half the edges of a box, or as `Faces.round_size` [m]
+    mesh: wp.array(dtype=wp.uint64)
+    ball: wp.array(dtype=float)  # radius of one about the frame's origin that has all of it [m]
+    reach: float  # as of `Faces`
+
+
+@wp.func
+def _out_of_led(faces: LedFaces, k: int, before: wp.vec3, x: wp.vec3) -> wp.vec3:
+    """The way out of shape k, in its frame; 0 outside."""
+    size = faces.size[k]
+    if faces.kind[k] == BOX:
+        if not _between(-size, size, x):
+            return wp.vec3(0.0, 0.0, 0.0)
+        side = _crossed(size, before, x)
+        return (wp.dot(wp.abs(side), size) - wp.dot(side, x)) * side
+    if faces.kind[k] == ROUND:
+        return _out_of_round(size, x)
+    return _out_of_mesh(faces.mesh[k], faces.reach, x)
+
+
+@wp.kernel(enable_backward=False)
+def keep_out_of_led(
+    # Data in:
+    particle_world: wp.array(dtype=int),
+    stage: wp.array(dtype=int),  # empty where no water is led through pipes (`openings`)
+    mass: wp.array(dtype=float),
+    faces: LedFaces,
+    body_q: wp.array(dtype=wp.transform),
+    body_qd: wp.array(dtype=wp.spatial_vector),
+    body_com: wp.array(dtype=wp.vec3),
+    spacing: float,
+    quantum: float,  # [N s]
+    dt: float,
+    # Data in and out:
+    position: wp.array(dtype=wp.vec3),
+    velocity: wp.array(dtype=wp.vec3),
+    impulse: wp.array2d(dtype=wp.int64),
+):
+    """Put fluid that a led body's face went over in this step back before it, and let it go as fast as the face.
+
+    Its pressure alone is no wall: beside a void it leaves the water, and a thin sheet that a wall runs into is gone
+    through.
+    """
+    i = wp.tid()
+    if stage.shape[0] > 0:
+        if stage[i] != FREE:
+            return
+    x = position[i]
+    v = velocity[i]
+    for k in range(faces.first[particle_world[i]], faces.first[particle_world[i] + 1]):
+        body = faces.body[k]
+        pose = body_q[body] * faces.pose[k]
+        into = wp.transform_inverse(pose)
+        own = wp.transform_point(into, x)
+        if wp.length(own) < faces.ball[k]:
+            arm = x - wp.transform_point(body_q[body], body_com[body])
+            wall = velocity_at(body_qd[body], arm)
+            out = wp.transform_vector(pose, _out_of_led(faces, k, wp.transform_point(into, x - dt * (v - wall)), own))
+            n = wp.normalize(out)
+            stop = -wp.min(wp.dot(v - wall, n), 0.0) * n
+            x += out
+            v += stop
+            count_blow(impulse, body, 0, -mass[i] * stop, quantum)
+            count_blow(impulse, body, 3, wp.cross(arm, -mass[i] * stop), quantum * spacing)
+    position[i] = x
+    velocity[i] = v

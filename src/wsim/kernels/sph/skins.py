@@ -4,6 +4,7 @@ import math
 
 import warp as wp
 
+from wsim.kernels.sph.blows import count_blow, velocity_at
 from wsim.kernels.sph.openings import FREE
 
 NAN = wp.constant(math.nan)
@@ -11,17 +12,6 @@ NAN = wp.constant(math.nan)
 CLEARANCE = wp.constant(1.0e-3)
 # Faces that a particle slides along in one step; then it stays.
 SLIDES = wp.constant(4)
-
-
-@wp.func
-def _velocity_at(twist: wp.spatial_vector, arm: wp.vec3) -> wp.vec3:
-    return wp.spatial_top(twist) + wp.cross(wp.spatial_bottom(twist), arm)
-
-
-@wp.func
-def _count(impulse: wp.array2d(dtype=wp.int64), body: int, first: int, j: wp.vec3, quantum: float):
-    for axis in range(3):
-        wp.atomic_add(impulse, body, first + axis, wp.int64(wp.rint(wp.float64(j[axis]) / wp.float64(quantum))))
 
 
 @wp.kernel(enable_backward=False)
@@ -104,7 +94,7 @@ def keep_out_of_skins(
                 out = wp.transform_vector(now, n)
                 wall = wp.vec3(0.0, 0.0, 0.0)
                 if body >= 0:
-                    wall = _velocity_at(body_qd[body], wp.transform_vector(now, at - body_com[body]))
+                    wall = velocity_at(body_qd[body], wp.transform_vector(now, at - body_com[body]))
                 stop -= wp.min(wp.dot(v + stop - wall, out), 0.0) * out
                 slide += 1
             if moved:
@@ -113,8 +103,8 @@ def keep_out_of_skins(
                 if body >= 0:
                     j = -mass[i] * stop
                     arm = x - wp.transform_point(now, body_com[body])
-                    _count(impulse, body, 0, j, quantum)
-                    _count(impulse, body, 3, wp.cross(arm, j), quantum * spacing)
+                    count_blow(impulse, body, 0, j, quantum)
+                    count_blow(impulse, body, 3, wp.cross(arm, j), quantum * spacing)
                 else:
                     fixed += stop
     kept[i] = x
@@ -122,29 +112,3 @@ def keep_out_of_skins(
     velocity[i] = v
     if on_walls.shape[0] > 0:
         on_walls[i] = on_walls[i] - mass[i] / dt * fixed
-
-
-@wp.kernel(enable_backward=False)
-def add_blows(
-    # Data in:
-    quantum: float,  # [N s]
-    spacing: float,
-    dt: float,
-    # Data in and out:
-    impulse: wp.array2d(dtype=wp.int64),
-    body_wrench: wp.array(dtype=wp.spatial_vector),
-    body_f: wp.array(dtype=wp.spatial_vector),
-):
-    """Add what fluid gave to bodies' faces to the wrenches on them, and begin anew."""
-    body = wp.tid()
-    force = wp.vec3(0.0, 0.0, 0.0)
-    torque = wp.vec3(0.0, 0.0, 0.0)
-    per = wp.float64(quantum) / wp.float64(dt)
-    for axis in range(3):
-        force[axis] = float(wp.float64(impulse[body, axis]) * per)
-        torque[axis] = float(wp.float64(impulse[body, axis + 3]) * per * wp.float64(spacing))
-        impulse[body, axis] = wp.int64(0)
-        impulse[body, axis + 3] = wp.int64(0)
-    wrench = wp.spatial_vector(force, torque)
-    body_wrench[body] = body_wrench[body] + wrench
-    body_f[body] = body_f[body] + wrench
