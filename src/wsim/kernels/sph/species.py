@@ -24,6 +24,7 @@ class Species:
     point: wp.array(dtype=wp.vec4)  # x, y, z, V
     motion: wp.array(dtype=wp.vec4)  # vx, vy, vz and a pressure, or what a wall gives back
     liquid: wp.array(dtype=wp.vec2)  # rest density, viscosity; of solids what is near; empty with one liquid
+    creep: wp.array(dtype=wp.vec4)  # velocity that the laminar viscosity takes (`yielding`), where a liquid yields
     full: wp.array(dtype=float)  # of fluid: 1 with all around it filled, 0 at a surface
     facing: wp.array(dtype=wp.vec4)  # of solids: the way to the fluid, of length 1; 0 if there is none
     across: wp.array(dtype=wp.vec4)  # of bodies: the way to other solids, likewise
