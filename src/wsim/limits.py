@@ -28,6 +28,7 @@ MOST_STRETCH = 10.0  # a spring's length, of its rest: rubber bears less, and st
 TAUT = 1e-4  # [m]: a rope may be that much shorter than its way, by the rounding of what states it
 MAX_KEYS = 10_000  # of a path
 MAX_COUNT = 20_000_000  # fluid particles
+LEAST_ACROSS = 4  # particles of a fluid across a tank
 MAX_DURATION = 3600.0  # [s]
 MAX_FRAME_RATE = 1000.0  # [1/s]
 MIN_RATE, MAX_RATE = 1e-3, 1e4  # [Hz], of a sensor

@@ -49,7 +49,7 @@ CASES: list[tuple[Callable[[Scene], object], str]] = [
     (lambda s: s.tank("t", inner_size=(1, 1, 0)), 'tank("t"): inner_size[2] = 0 must be > 0 m'),
     (lambda s: s.tank("t", inner_size=UNIT, wall=-0.1), "wall = -0.1 must be > 0 m"),
     (lambda s: s.fluid("w", fills="tank", level=1.5, spacing=0.1), 'level = 1.5 m is above the rim of tank "tank"'),
-    (lambda s: s.fluid("w", fills="tank", level=0.5, spacing=2), "spacing = 2 m is wider than tank"),
+    (lambda s: s.fluid("w", fills="tank", level=0.5, spacing=2), "spacing = 2 m is too coarse for tank"),
     (lambda s: s.fluid("w", fills="tank", level=0.05, spacing=0.1), "must hold at least one particle"),
     (lambda s: s.fluid("w", fills="tank", level=0.5, spacing=0.001), "5e+08 particles"),
     (lambda s: s.fluid("w", fills="tank", spacing=0.1), "fills is given without level"),

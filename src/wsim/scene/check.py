@@ -48,6 +48,7 @@ from wsim.scene.check_targets import check_targets
 from wsim.scene.errors import one_line
 from wsim.scene.skeleton import is_free
 from wsim.scene.usd_cameras import camera_problems
+from wsim.scene.usd_fluids import fluid_problems
 from wsim.scene.usd_openings import opening_problems
 from wsim.scene.usd_policies import policy_problems
 from wsim.scene.usd_reaches import reach_problems
@@ -157,7 +158,8 @@ def _stage_problems(stage: Usd.Stage, known: bool) -> Iterator[str]:
         yield from reach_problems(ours)
         yield from schedule_problems(ours)
         yield from sensor_problems(ours)
-        yield from opening_problems(ours)
+        yield from fluid_problems(ours)
+        yield from opening_problems(ours, prims)
         yield from camera_problems(prims)
         if any(schema.has(prim, schema.CONTACT) for prim in ours):
             yield from contact_problems(prims)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from pxr import Gf, Sdf, UsdGeom
 
-from wsim.limits import MAX_FLOW_INDEX, MAX_SIZE, MAX_YIELD_STRESS, MIN_FLOW_INDEX, MIN_SIZE
+from wsim.limits import LEAST_ACROSS, MAX_FLOW_INDEX, MAX_SIZE, MAX_YIELD_STRESS, MIN_FLOW_INDEX, MIN_SIZE
 from wsim.scene import schema
 from wsim.scene.authoring import Handle, note_line, set_extent, set_pose
 from wsim.scene.materials import Look, Material, bind
@@ -89,7 +89,7 @@ class Fluids(Tanks):
 
         Raises:
             SceneError: If the fluid does not fit what it fills, that has no hollow, it is thinner than one particle or
-                overlaps another fluid, or a number is out of range.
+                overlaps another fluid, a tank is less than four particles across, or a number is out of range.
         """
         call = Call("fluid", name)
         path = self._path(call)
@@ -181,7 +181,7 @@ class Fluids(Tanks):
         prim = self._find(call, "fills", fills)
         tank = self._tanks.get(str(prim.GetPath()))
         if tank is not None:
-            _check_thickness(call, tank.inner_size, spacing, "inner_size", f'tank "{tank.name}"')
+            _check_coarse(call, tank, spacing)
             return tank.path, *_filling(call, tank, self._topmost(tank), level, volume), None
         from wsim.scene.vessels import Vessel  # with pydantic, and few programs fill another vessel
 
@@ -260,6 +260,15 @@ def _check_thickness(call: Call, size: Vec3, spacing: float, field: str, what: s
         call.fail(
             f"spacing = {spacing:g} m is wider than {what}: its {field}, least edge {thinnest:g} m, must hold at "
             f"least one particle; take spacing <= {thinnest / 4:.3g}"
+        )
+
+
+def _check_coarse(call: Call, tank: Tank, spacing: float) -> None:
+    least = min(tank.inner_size)
+    if least < LEAST_ACROSS * spacing * (1.0 - 1e-9):
+        call.fail(
+            f'spacing = {spacing:g} m is too coarse for tank "{tank.name}": its inner_size, least edge {least:g} m, '
+            f"must hold {LEAST_ACROSS} particles; take spacing <= {least / LEAST_ACROSS:.3g}, or a larger tank"
         )
 
 

@@ -13,13 +13,15 @@ from newton import GeoType, ParticleFlags, ShapeFlags
 from wsim.errors import UserError
 from wsim.geometry.filled import box_lattice
 from wsim.geometry.rotations import conjugate, rotate
-from wsim.geometry.shapes import into, kind_of, reach
+from wsim.geometry.shapes import into, kind_of
 from wsim.scene.world import Fluid, Shape, World
-from wsim.sim.openings import fastest_poured, waiting
+from wsim.sim.falls import over_all, poured
+from wsim.sim.openings import fastest_poured, taps_of, waiting
 from wsim.sim.vessels import carried_speed, places_in
 from wsim.solvers.inside import depth_in, is_open, solid_of
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.sph_config import ConfigSPH
+from wsim.solvers.sph_mouths import in_pipe
 
 SOUND_OVER_SPEED = 10.0  # keeps the density within 1 % (Monaghan 1994)
 
@@ -131,22 +133,15 @@ def expected_speed(world: World) -> float:
     for fluid in world.fluids:
         # A fluid that fills its container from wall to wall can only slosh, at the shallow-water wave's speed;
         # a column in one falls by its height, a free one to the lowest that there is.
-        falls = 2.0 * (fluid.size[2] if fluid.container else max(_over_all(fluid, world), fluid.size[2]))
+        falls = 2.0 * (fluid.size[2] if fluid.container else max(over_all(fluid, world), fluid.size[2]))
         wave = math.sqrt((fluid.size[2] if _fills(fluid, world) else falls) * g)
         speeds += [math.hypot(*fluid.velocity, wave), carried_speed(fluid, world)]
+        speeds.append(math.sqrt(2.0 * g * poured(fluid, world)))
     for body in world.bodies:
         bottom = body.position[2] - 0.5 * min((kind_of(shape).thinnest for shape in body.shapes), default=0.0)
         drop = max((bottom - (f.center[2] + 0.5 * f.size[2]) for f in world.fluids), default=0.0)
         speeds.append(math.sqrt(2.0 * g * max(drop, 0.0)))
     return max(speeds)
-
-
-def _over_all(fluid: Fluid, world: World) -> float:
-    """How high the top of a fluid is above the lowest point of what stands still, and above planes [m]."""
-    still = [shape for static in world.statics for shape in static.shapes if shape.collides]
-    planes = [shape.position[2] for shape in still if shape.kind == "plane"]
-    lows = planes or [float(reach(shape, np.array([[0.0, 0.0, 0.0, 1.0]]))[0][0]) for shape in still]
-    return fluid.center[2] + 0.5 * fluid.size[2] - min(lows, default=math.inf)
 
 
 def _fills(fluid: Fluid, world: World) -> bool:
@@ -198,7 +193,7 @@ def seed(fluid: Fluid, world: World, config: ConfigSPH, meshes: dict[str, list[D
     Raises:
         UserError: If there is no room for it.
     """
-    position = _standing(fluid, world, meshes) if fluid.size[2] > 0.0 else np.zeros((0, 3))
+    position = _standing(fluid, world, config, meshes) if fluid.size[2] > 0.0 else np.zeros((0, 3))
     depth = 0.5 * fluid.size[2] + fluid.center[2] - position[:, 2]
     over = sum(_over(fluid, other, position) for other in world.fluids if other is not fluid)
     pressure = abs(world.gravity[2]) * (fluid.density * np.maximum(depth, 0.0) + over)
@@ -227,20 +222,20 @@ def _over(fluid: Fluid, other: Fluid, position: Array) -> Array:
     return np.where(off.all(axis=1), other.density * other.size[2], 0.0)
 
 
-def _standing(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Array:
-    """Where particles of a fluid are: not where a solid already is, (n, 3) [m]."""
+def _standing(fluid: Fluid, world: World, config: ConfigSPH, meshes: dict[str, list[Depth]]) -> Array:
+    """Where particles of a fluid are: not where a solid or the pipe of a tap already is, (n, 3) [m]."""
     position = places_in(fluid, world) if fluid.volume is not None else _in_box(fluid, world)
     free = np.ones(len(position), dtype=bool)
-    margin, around = 0.4 * fluid.spacing, {container.prim for container in world.containers}
-    if fluid.volume is not None:
-        around.add(str(fluid.container))
+    margin = 0.4 * fluid.spacing
     for body in world.bodies:
-        if body.prim not in around:
+        if body.prim != fluid.container:
             local = rotate(conjugate(np.array(body.rotation)), position - np.array(body.position))
             free &= ~_inside(body.shapes, local, margin, meshes.get(body.prim, []))
     for static in world.statics:
-        if static.prim not in around:  # whose fluid is cut to its walls
+        if static.prim != fluid.container:  # to whose walls the fluid is cut
             free &= ~_inside(static.shapes, position, margin, meshes.get(static.prim, []))
+    for tap in taps_of(world):
+        free &= ~in_pipe(tap, config, fluid.cell, position, margin)
     if not free.any():
         raise UserError(f"{fluid.prim}: bodies leave no room for fluid of spacing {fluid.spacing} m in {fluid.size} m")
     return position[free]
@@ -291,7 +286,9 @@ def _inside(shapes: list[Shape], points: Array, margin: float, meshes: list[Dept
     """Which points lie in an object's shapes, or within `margin` [m] of them, all in its frame."""
     inside = np.zeros(len(points), dtype=bool)
     for shape in shapes:
-        if shape.collides and shape.kind not in ("mesh", "plane"):
+        if shape.collides and shape.kind == "plane":
+            inside |= kind_of(shape).depth(into(shape, points)) > -margin
+        elif shape.collides and shape.kind != "mesh":
             inside |= np.maximum.reduce(kind_of(shape).beyond(into(shape, points))) < margin
     for depth in meshes:
         inside |= depth(points) > -margin

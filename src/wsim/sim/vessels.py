@@ -63,7 +63,7 @@ def carried_speed(fluid: Fluid, world: World) -> float:
     body = next((body for body in world.bodies if body.prim == fluid.container and body.path), None)
     if body is None or fluid.volume is None:
         return 0.0
-    times, place, turned = _way(body)
+    times, place, turned = way_of(body)
     local = rotate(np.array(body.rotation) * [-1, -1, -1, 1], np.array(fluid.center) - np.array(body.position))
     velocity = np.gradient(place + rotate(turned, local), times, axis=0)
     pull = float(np.linalg.norm(np.gradient(velocity, times, axis=0) - np.array(world.gravity), axis=1).max())
@@ -83,13 +83,13 @@ def _held_by(fluid: Fluid, world: World) -> tuple[list[Shape], Vec3, Quat]:
 def _room(body: Body) -> tuple[Vec3, Vec3]:
     """Corners of the room that a vessel moves in [m]: along its path, or around where it starts."""
     radius = max(float(np.linalg.norm(shape.position)) + kind_of(shape).radius_about for shape in body.shapes)
-    place = _way(body)[1] if body.path else np.array([body.position])
+    place = way_of(body)[1] if body.path else np.array([body.position])
     margin = radius * (2.0 if body.path else FREE)
     low, high = (place.min(axis=0) - margin).tolist(), (place.max(axis=0) + margin).tolist()
     return (low[0], low[1], low[2]), (high[0], high[1], high[2])
 
 
-def _way(body: Body) -> tuple[Array, Array, Array]:
+def way_of(body: Body) -> tuple[Array, Array, Array]:
     """Times [s], places [m] and rotations along a body's path."""
     assert body.path is not None
     keys = body.path.times

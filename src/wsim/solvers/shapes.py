@@ -13,6 +13,7 @@ from scipy.spatial import cKDTree
 
 from wsim.geometry.filled import Samples, box_lattice, capsule_layers, cylinder_layers, sphere_layers
 from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.limits import LEAST_ACROSS
 from wsim.solvers.layers import mesh_layers
 from wsim.solvers.plane_sections import fill_section
 from wsim.solvers.sampling import container_walls
@@ -20,6 +21,7 @@ from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.vessel_walls import VesselWalls
 
 Array = np.ndarray
+ROUNDED = 1e-6  # of a length: a model holds single precision
 
 
 @dataclass(frozen=True)
@@ -141,11 +143,11 @@ def sample_container(box: OpenBox, config: ConfigSPH) -> tuple[Array, Array]:
     plane = config.dimensions == 2
     open_axes = np.array([ends is not None for ends in config.periodic]) | np.array([False, plane, False])
     narrowest = min(length for axis, length in enumerate(box.size) if not open_axes[axis])
-    if narrowest < 4.0 * config.spacing:
+    if narrowest < LEAST_ACROSS * config.spacing * (1.0 - ROUNDED):
         raise ValueError(
             f"SolverSPH: spacing = {config.spacing} m is too coarse for a container of inner size {box.size} m: its "
-            f"narrowest side holds {narrowest / config.spacing:.1f} particles and needs 4; "
-            f"use spacing <= {narrowest / 4.0:.4g}"
+            f"narrowest side holds {narrowest / config.spacing:.1f} particles and needs "
+            f"{LEAST_ACROSS}; use spacing <= {narrowest / LEAST_ACROSS:.4g}"
         )
     sides = np.array([[True, True], [True, True], [True, box.closed]]) & ~open_axes[:, None]
     samples = container_walls(np.array(box.size), config.spacing, config.support, sides, plane)

@@ -379,6 +379,13 @@ class SolverSPH(SolverBase):
             inputs=[*method, gravity, fluid, walls, bodies, dt],
             outputs=[self.pressure, self.full],
         )
+        if self.openings and self.openings.pipes:
+            launch_shared(
+                self.programs.fill,
+                dim=self.fluid_count,
+                inputs=[*method, gravity, fluid],
+                outputs=[self.pressure],
+            )
         wp.launch(
             density_kernels.set_pressure,
             dim=self.fluid_count,
@@ -416,8 +423,8 @@ class SolverSPH(SolverBase):
         if self.skins.count:
             self.skins.keep_out(search.fluid, dt, state_out, state_in, self._on_walls)
         if self.openings:
-            self.openings.lead(search.fluid, state_out, self._on_walls, dt)
+            self.openings.lead(self.method, search.fluid, state_out, self._on_walls, dt)
         if len(self._on_walls):
             self._wall_impulse.add(self._on_walls, dt)
-            if self.bodies.count:
+            if len(self.push.on_walls):
                 self._wall_impulse.add(self.push.on_walls, dt, self.push.world_first)

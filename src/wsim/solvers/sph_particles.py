@@ -69,6 +69,7 @@ class SortedParticles:
         self.species.point, self.species.motion = self.point, self.motion
         self.species.liquid = self.liquid = wp.zeros(n if several else 0, dtype=wp.vec2)
         self.species.creep = self.creep = wp.zeros(n if yields else 0, dtype=wp.vec4)
+        self.species.stage = self.stage
         self.species.full = self.full = wp.zeros(n if kind == FLUID else 0, dtype=float)
         self.species.facing = self.facing = wp.zeros(0 if kind == FLUID else n, dtype=wp.vec4)
         self.species.across = self.across = wp.zeros(n if kind == BODIES else 0, dtype=wp.vec4)

@@ -53,7 +53,11 @@ class Carried:
 
 
 class FluidPush:
-    """What the fluids' particles give to each body."""
+    """What the fluids' particles give to each body.
+
+    Attributes:
+        vessels: Bodies that fluid is in.
+    """
 
     def __init__(self, evidence: Evidence, method: Method) -> None:
         self._evidence, self._method = evidence, method
@@ -63,6 +67,8 @@ class FluidPush:
             np.repeat([of(fluid) for fluid in evidence.world.fluids], counts)
             for of in (particle_mass, lambda fluid: fluid.density, lambda fluid: fluid.viscosity)
         )
+        holders = {fluid.container for fluid in evidence.world.fluids if fluid.volume is not None}
+        self.vessels = frozenset(i for i, body in enumerate(evidence.world.bodies) if body.prim in holders)
         self.filled = _filled(evidence)
         solids = evidence.recording.solids
         self._walls = _in_double(solids.walls) if solids else None
@@ -117,7 +123,7 @@ class FluidPush:
         place, volume, gradient = (
             np.concatenate([getattr(each, name) for each in solids]) for name in ("place", "volume", "gradient")
         )
-        return Solid(place, volume, owner, gradient, joined(takes))
+        return Solid(place, volume, owner, gradient, joined(takes), self.vessels)
 
     def _carried(self, i: int, frame: int, samples: Samples) -> Carried:
         q = self._evidence.body_q[frame, i].astype(np.float64)

@@ -46,6 +46,7 @@ class Solid:
     owner: Rows  # (n,) the body's number, or WALL
     gradient: Floats  # (n, 3) of a body's: sum of V grad W over the others of it [1/m]
     taken: Taken
+    vessels: frozenset[int] = frozenset()  # bodies at whose walls no gap is: their particles lie in what is beside them
 
 
 @dataclass(frozen=True)
@@ -100,11 +101,13 @@ def _across(method: Method, solid: Solid) -> Across:
     weight = method.weight(distance)
     across = np.stack([np.bincount(b, -weight * column, len(solid.place)) for column in way.T], axis=1)
     across = across / np.maximum(np.linalg.norm(across, axis=1), 1e-300)[:, None]
+    spared = np.isin(solid.owner, sorted(solid.vessels))
+    across[spared] = 0.0
     over = across[b] - across[s]  # nothing for walls, which take b's
     length = np.where(solid.owner[s] == WALL, 1.0, np.linalg.norm(over, axis=1))
     facing = np.where(solid.taken.wet[:, None], solid.taken.facing, 0.0)
     own, its = (np.einsum("ij,ij->i", facing[rows], over) for rows in (b, s))
-    return Across(b, s, distance, way, (own > -BEYOND * length) & (its < BEYOND * length))
+    return Across(b, s, distance, way, (own > -BEYOND * length) & (its < BEYOND * length) & ~spared[b])
 
 
 def _pairs(method: Method, solid: Solid, i: int) -> list[tuple[Rows, Rows, Floats]]:

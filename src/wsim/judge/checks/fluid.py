@@ -76,7 +76,7 @@ class CheckFluidMass(Check):
         for shape in (shape for static in evidence.world.statics for shape in static.shapes if shape.collides):
             reach = 0.5 * float(np.linalg.norm(size)) + fluid.spacing
             own = fluid.container is not None and within(shape.prim, fluid.container)  # it ends at its tank's walls
-            if own or shape.kind == "plane" or _beside(shape, middle, reach):
+            if own or (shape.kind != "plane" and _beside(shape, middle, reach)):
                 continue
             depth = np.maximum(depth, kind_of(shape).depth(into(shape, places)))
         cell = float(size.prod()) / len(places)
@@ -117,7 +117,8 @@ class CheckPlanFluid(Check):
         found: list[Finding] = []
         for item, fluid in known:
             found += [*self._density(fluid, item), *self._viscosity(fluid, item), *self._level(evidence, fluid, item)]
-            found += [*self._law(fluid, item), *self._block(fluid, item), *self._velocity(fluid, item)]
+            found += [*self._block(fluid, item), *self._velocity(fluid, item), *self._vessel(evidence, fluid, item)]
+            found += self._law(fluid, item)
         return found or ([self.passed("Fluids are of the plan's density, viscosity and level")] if known else [])
 
     def _viscosity(self, fluid: Fluid, item: PlanObject) -> list[Finding]:
@@ -205,19 +206,41 @@ class CheckPlanFluid(Check):
             )
         ]  # fmt: skip
 
+    def _vessel(self, evidence: Evidence, fluid: Fluid, item: PlanObject) -> list[Finding]:
+        """It is in what the plan has it in, and as much of it as the plan says."""
+        row, volume = item.relation("PLACE-IN"), item.registration.volume
+        found = []
+        prim = evidence.prim(row.ref) if row is not None and row.ref is not None else None
+        if prim is not None and not f"{fluid.container}/".startswith(f"{prim}/"):  # of an asset the body that is hollow
+            target = RepairTarget(kind="program", prim=fluid.prim, parameter="fills", why="the plan's")
+            message = f"{fluid.prim} is in {fluid.container or 'no vessel'}; the plan has it in {prim}"
+            found.append(self.failed(message, prim=fluid.prim, target=target))
+        if volume is not None and abs(fluid.amount / volume - 1.0) > self.share:
+            target = RepairTarget(kind="fluid", prim=fluid.prim, parameter="volume", suggested=volume, unit="m^3")
+            found.append(
+                self.between(
+                    f"{fluid.prim} is {fluid.amount:.4g} m^3; the plan has {volume:.4g} m^3",
+                    fluid.amount, share_about(volume, self.share), "m^3", expected=volume, prim=fluid.prim, time=0.0,
+                    limit_from=f"the plan's volume, to {self.share:.0%}", target=target,
+                )
+            )  # fmt: skip
+        return found
+
     def _level(self, evidence: Evidence, fluid: Fluid, item: PlanObject) -> list[Finding]:
         row, container = item.relation("FREE-SURFACE-AT"), evidence.container_of(fluid)
-        if row is None or row.value is None or container is None:
+        if row is None or row.value is None or (container is None and fluid.volume is None):
             return []
-        floor = container.inner_center[2] - container.inner_size[2] / 2
-        level = fluid.center[2] + fluid.size[2] / 2 - floor
+        level = fluid.size[2]  # of a vessel the box's floor is the lowest point of its hollow
+        if container is not None:
+            floor = container.inner_center[2] - container.inner_size[2] / 2
+            level = fluid.center[2] + fluid.size[2] / 2 - floor
         if abs(level - row.value) <= self.spacings * fluid.spacing:
             return []
         off = self.spacings * fluid.spacing
         target = RepairTarget(kind="fluid", prim=fluid.prim, parameter="level", suggested=row.value, unit="m")
         return [
             self.between(
-                f"{fluid.prim} is filled to {level:.4g} m above the floor of {container.prim}; "
+                f"{fluid.prim} is filled to {level:.4g} m above the floor of {fluid.container}; "
                 f"the plan has {row.value:.4g} m",
                 level, (row.value - off, row.value + off), "m", expected=row.value, prim=fluid.prim, time=0.0,
                 limit_from=f"the plan's level, to {self.spacings:g} particle spacings", target=target

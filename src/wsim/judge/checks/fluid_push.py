@@ -41,6 +41,9 @@ class CheckFluidPush(Check):
 
     Frames tell the force at moments, the recording its mean between them. Sound and splashes come in between, so that
     a single interval may be anything off; the mean of many is not, and how far it may be follows from how they scatter.
+
+    Vessels are left out: their faces stop water, too, which is no sum over pairs. `CheckFluidMomentum` holds what they
+    get against what the water loses.
     """
 
     # That the mean of one stretch is farther off by chance, on one side: 4.5 standard errors of 22 pairs of intervals.
@@ -74,7 +77,8 @@ class CheckFluidPush(Check):
         gained = np.diff(np.cumsum(impulse.astype(np.float64), axis=0)[frames], axis=0)
         given = gained / np.diff(time)[:, None, None]
         push = FluidPush(evidence, method)
-        bodies = [i for i, each in enumerate(push.filled) if each is not None and given[:, i].any()]
+        pushed = [i for i, each in enumerate(push.filled) if each is not None and given[:, i].any()]
+        bodies = [i for i in pushed if i not in push.vessels]
         if not bodies:
             return []
         rows = self._rows(len(given), len(bodies))

@@ -114,7 +114,7 @@ class Evidence(Recorded):
 
     def _volume_in(self, container: Container, fluid: Fluid, chosen: NDArray[np.intp]) -> float:
         """What of a fluid a container holds, in the mean of frames [m^3]."""
-        inside = 1.0 - self.containment(container, fluid).outside[chosen]
+        inside = 1.0 - self.containment(container, fluid).elsewhere[chosen]
         return fluid.cell * float(np.mean(self.track(fluid).count[chosen] * inside))
 
     def _beside(self, fluid: Fluid, container: Container, chosen: NDArray[np.intp]) -> tuple[list[Fluid], list[Fluid]]:

@@ -131,7 +131,9 @@ def make_continuity(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         vent = VENTED * method.speed_of_sound / method.h
         rate = (c2 * rho0 + m[3]) * divergence + 2.0 * method.diffusion * method.h * method.speed_of_sound * smoothing
         held = HELD_AT_SURFACE * wp.length(weight) * method.h
-        now = wp.max(m[3] + dt * rate, enclosed * (LOWEST_DENSITY - 1.0) * rho0 * c2 - held)
+        # What has no water around it hangs on to nothing: in a corner, solids alone are all around a drop.
+        torn = enclosed * wp.min(total[2] / (ALONE * dimensions(grid)), 1.0)
+        now = wp.max(m[3] + dt * rate, torn * (LOWEST_DENSITY - 1.0) * rho0 * c2 - held)
         if now > VENT_ABOVE * held:
             now = VENT_ABOVE * held + (now - VENT_ABOVE * held) * wp.exp(-dt * vent * (1.0 - enclosed))
         pressure[s] = now

@@ -195,6 +195,21 @@ _OF_LIQUIDS = (
     EXTRAPOLATED_LIQUIDS,
 )
 
+_FREE = (
+    """
+    const int* __restrict__ orders = other.order.data;
+    const int* __restrict__ stages = other.stage.data;
+    const float w0 = common[0], w1 = common[1], w2 = common[2];
+    float total = 0.0f, pressure = 0.0f;
+    """,
+    """
+            const float w = stages[orders[j]] == 0 ? t2 * t2 * (1.0f + 4.0f * u) : 0.0f;
+            total += w;
+            pressure += w * (n.w + w0 * d0 + w1 * d1 + w2 * d2);
+    """,
+    "return wp::vec_t<2, float>(total, pressure);",
+)
+
 _MOMENTUM = (
     """
     const float v0 = v[0], v1 = v[1], v2 = v[2];
@@ -300,6 +315,7 @@ class PairSums:
             density diffusion over those that hand on a pressure in a gap.
         flux: `Flux`, over fluid around what stands still.
         extrapolation: `Extrapolated`, over fluid.
+        free: Sums of W and of W times pressure, over fluid that no opening leads.
         force: Force on a particle of fluid per volume, over fluid or bodies.
         force_on_solid: Force on a particle of a solid per volume, over fluid.
         force_at_walls: `AtWalls`, over walls.
@@ -323,6 +339,7 @@ class PairSums:
     continuity_at_bodies: wp.Function
     flux: wp.Function
     extrapolation: wp.Function
+    free: wp.Function
     force: dict[int, wp.Function]
     force_on_solid: wp.Function
     force_at_walls: wp.Function
@@ -421,6 +438,7 @@ def make_pair_sums(
         continuity_at_bodies=total(_CONTINUITY_AT_BODIES, wp.vec4, BODIES),
         flux=total(_FLUX, Flux, FLUID, in_solids),
         extrapolation=total(*(_OF_LIQUIDS if several else (_EXTRAPOLATION, Extrapolated)), FLUID, in_solids),
+        free=total(_FREE, wp.vec2),
         force={
             kind: total(_MOMENTUM, wp.vec3, kind, among if kind == FLUID else at_solids) for kind in (FLUID, BODIES)
         },

@@ -12,6 +12,7 @@ from wsim.kernels.sph.density import make_continuity
 from wsim.kernels.sph.momentum import make_momentum
 from wsim.kernels.sph.neighbors import Finders, make_finders
 from wsim.kernels.sph.pair_sums import make_pair_sums
+from wsim.kernels.sph.pipes import make_fill
 from wsim.kernels.sph.push import make_look_across, make_push
 from wsim.kernels.sph.yielding import make_stages, make_yield
 
@@ -23,6 +24,7 @@ class Programs:
     find: Finders
     compress: wp.Kernel
     continuity: wp.Kernel
+    fill: wp.Kernel
     extrapolate: wp.Kernel
     momentum: wp.Kernel
     look_across: wp.Kernel
@@ -57,6 +59,7 @@ class Programs:
             make_finders(sums, solids),
             make_compress(sums),
             make_continuity(sums, solids),
+            make_fill(sums),
             make_extrapolate(sums),
             make_momentum(sums, solids),
             make_look_across(sums, solids),
