@@ -11,6 +11,7 @@ from wsim.kernels.sph.grid import Grid, block_axis, grid_axis
 FLUID = 0
 WALLS = 1  # what does not move
 BODIES = 2  # what does
+KINDS = (FLUID, WALLS, BODIES)
 
 DRY = wp.constant(-1.0e30)  # pressure of a particle of a solid that no fluid is near [Pa]
 
