@@ -65,7 +65,7 @@ def test_what_yields_has_its_law_and_a_step_that_holds_it(tmp_path: Path) -> Non
             stress, index = built.model.sph.yield_stress.numpy(), built.model.sph.flow_index.numpy()
             assert (stress[mud] == 60.0).all() and (stress[water] == 0.0).all()
             assert index[mud] == pytest.approx(0.8) and (index[water] == 1.0).all()
-    assert steps["mud"] == pytest.approx(0.25 * steps["plain"], rel=0.1)
+    assert steps["mud"] == pytest.approx(steps["plain"], rel=0.02)  # in stages; forward it would be a thirtieth
 
 
 def test_liquids_of_different_spacing_are_refused(tmp_path: Path) -> None:

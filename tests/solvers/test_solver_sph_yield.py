@@ -1,6 +1,5 @@
 """Liquids that yield, thin or thicken, against Herschel and Bulkley's law and its flow down a slope."""
 
-import dataclasses
 import math
 
 import newton
@@ -60,8 +59,7 @@ def film(stress: float, consistency: float, index: float, speed_at, seconds: flo
     )  # fmt: skip
     solver = SolverSPH(builder.finalize(device="cpu"), config)
     thick = float(config.largest_viscosity_of(np.array([RHO]), np.array([consistency]))[0])
-    longest = dataclasses.replace(config, viscosity=thick).max_time_step
-    state, steps = solver.model.state(), math.ceil(seconds / longest)
+    state, steps = solver.model.state(), math.ceil(seconds / config.yielding_time_step(thick / RHO))
     for _ in range(steps):
         solver.step(state, state, None, None, seconds / steps)
     z, speed = state.particle_q.numpy()[:, 2], state.particle_qd.numpy()[:, 0]
@@ -85,8 +83,10 @@ def test_a_film_down_a_slope_has_the_speed_and_the_plug_of_the_law(index):
     rate = np.interp(RHO * ALONG * (DEPTH - heights), np.minimum(stresses, largest * rates), rates)
     steady = np.append(0.0, np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(heights)))
     assert steady[-1] == pytest.approx(1.07 * ideal, rel=0.01)
-    z, speed, _ = film(stress, consistency, index, lambda at: np.interp(at, heights, steady), 0.25, largest)
-    assert speed[-2:].mean() == pytest.approx(steady[-1], rel=0.05)  # measured 2 % with n = 1, 3.2 % with 0.5
+    z, speed, _ = film(stress, consistency, index, lambda at: np.interp(at, heights, steady), 0.75, largest)
+    assert speed[-2:].mean() == pytest.approx(
+        steady[-1], rel=0.08
+    )  # in the end 6 %: the yield surface is a third of a spacing high
     # Where 0.9 of the speed is reached tells how deep it is sheared; the rest is the plug.
     at = float(np.interp(0.9 * ideal, speed, z)) / (1.0 - 0.1 ** (1.0 / power))
     assert at == pytest.approx(sheared, abs=0.06 * DEPTH)
@@ -100,3 +100,50 @@ def test_a_heap_below_its_yield_stress_stands_but_for_the_creep_of_the_largest_v
     creep = stress / thick * DEPTH * (1.0 + (1.0 - x) / x * math.log(1.0 - x))
     assert speed[-1] == pytest.approx(creep, rel=0.1)
     assert speed[-1] < 0.02 * ALONG * 0.25
+
+
+def lumps(stresses: list[float]) -> list[dict[str, np.ndarray]]:
+    """Worlds in which a lump that yields at such a stress flies into water, and what they hold after a while."""
+    builder, dp = newton.ModelBuilder(up_axis=newton.Axis.Z, gravity=(0.0, 0.0, 0.0)), 0.02
+    SolverSPH.register_custom_attributes(builder, several_liquids=True)
+    cube = (np.stack(np.meshgrid(*[np.arange(4.0)] * 3, indexing="ij"), axis=-1).reshape(-1, 3) - 1.5) * dp
+    for stress in stresses:
+        one = newton.ModelBuilder(up_axis=newton.Axis.Z, gravity=(0.0, 0.0, 0.0))
+        SolverSPH.register_custom_attributes(one, several_liquids=True)
+        for x, speed, density, own in ((-0.045, 1.5, RHO, stress), (0.045, 0.0, 1000.0, 0.0)):
+            told = {"liquid_density": density, "liquid_viscosity": 0.1, "yield_stress": own}
+            one.add_particles(
+                pos=(cube + np.array([x, 0.003, 0.0])).tolist(),
+                vel=[(speed, 0.0, 0.1 * speed)] * len(cube),
+                mass=[density * dp**3] * len(cube),
+                custom_attributes={f"sph:{name}": [value] * len(cube) for name, value in told.items()},
+            )
+        builder.add_world(one)
+    config = SolverSPH.Config(spacing=dp, speed_of_sound=15.0)
+    solver = SolverSPH(builder.finalize(device="cpu"), config)
+    state, mass = solver.model.state(), solver.model.particle_mass.numpy().astype(np.float64)
+    start = state.particle_qd.numpy().astype(np.float64)
+    for _ in range(60):
+        solver.step(state, state, None, None, 6e-4)
+    world, end = solver.model.particle_world.numpy(), state.particle_qd.numpy()
+    return [
+        {
+            "q": state.particle_q.numpy()[world == k],
+            "v": end[world == k],
+            "gained": mass[world == k] @ (end[world == k] - start[world == k]),
+            "exchanged": mass[world == k] @ np.abs(end[world == k] - start[world == k]),
+        }
+        for k in range(len(stresses))
+    ]
+
+
+def test_what_yields_keeps_its_momentum_and_goes_alone_as_in_a_batch():
+    """Though its viscosity is in no step exact: the stages give velocities, and the force of each pair is opposite."""
+    batch = lumps([50.0, 500.0])
+    for one in batch:
+        assert one["exchanged"].max() > 0.05  # [N s]: they did meet
+        assert np.abs(one["gained"]).max() < 1e-6 * one["exchanged"].max()
+    alone = lumps([500.0])[0]
+    for name in ("q", "v"):
+        assert alone[name].tobytes() == batch[1][name].tobytes(), name
+    assert not np.array_equal(batch[0]["q"], batch[1]["q"])

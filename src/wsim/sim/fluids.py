@@ -114,15 +114,15 @@ def of_worlds(worlds: Sequence[World]) -> dict[str, list[float]]:
 def largest_step(world: World, config: ConfigSPH) -> float:
     """The longest step that a world's fluids can take under common settings [s]."""
     return min(
-        replace(config, rest_density=fluid.density, viscosity=_most_viscous(fluid, config)).max_time_step
+        replace(config, rest_density=fluid.density, viscosity=fluid.viscosity).max_time_step
+        if fluid.newtonian
+        else config.yielding_time_step(_at_rest(fluid, config) / fluid.density)
         for fluid in world.fluids
     )
 
 
-def _most_viscous(fluid: Fluid, config: ConfigSPH) -> float:
-    """Viscosity of a fluid, of what yields where it does not flow [Pa s]."""
-    if fluid.newtonian:
-        return fluid.viscosity
+def _at_rest(fluid: Fluid, config: ConfigSPH) -> float:
+    """Viscosity of what yields where it does not flow [Pa s]."""
     return float(config.largest_viscosity_of(np.array([fluid.density]), np.array([fluid.viscosity]))[0])
 
 

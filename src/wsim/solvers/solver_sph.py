@@ -211,6 +211,7 @@ class SolverSPH(SolverBase):
             self.bodies.sampled.crowd((1.0 + self.config.skin) * self.config.support),
             self.openings.stage if self.openings else None,
             self.liquids is not None,
+            self.liquids is not None and self.liquids.yields,
         )
         self.programs = self.search.programs
         still = wp.zeros(self.wall_count, dtype=wp.vec3)
@@ -351,6 +352,9 @@ class SolverSPH(SolverBase):
             self.liquids.gather(fluid, self.model.particle_mass, self.config.speed_of_sound)
         self._gather_solid(self.search.bodies, self.bodies.position, self.bodies.velocity, self.bodies.volume)
         self.push.gather()
+        if self.liquids and self.liquids.yields:
+            wp.copy(fluid.creep, fluid.motion)
+            wp.copy(self.search.bodies.creep, self.search.bodies.motion)
 
     def _gather_solid(self, solid: SortedParticles, *arrays: wp.array) -> None:
         if solid.count:
@@ -407,8 +411,9 @@ class SolverSPH(SolverBase):
         search = self.search
         fluid, walls, bodies = (kind.species for kind in (search.fluid, search.walls, search.bodies))
         method = [search.grid, self.method, self.rest_density, self.viscosity]
-        if self.liquids:
+        if self.liquids and self.liquids.yields:
             self.liquids.shear(search, self.method)
+            self.liquids.creep(search, self.method, self.model, dt)
         self.push.sum(self.method, self.rest_density, self.viscosity, self.model.gravity)
         launch_shared(
             self.programs.momentum,

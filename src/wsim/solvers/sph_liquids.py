@@ -9,8 +9,9 @@ import numpy as np
 import warp as wp
 
 from wsim.kernels.sph.liquids import gather_liquids
+from wsim.kernels.sph.species import Species
 from wsim.solvers.launch import launch_shared
-from wsim.solvers.sph_config import ConfigSPH
+from wsim.solvers.sph_config import STAGES, ConfigSPH
 from wsim.solvers.sph_particles import SortedParticles
 from wsim.solvers.sph_search import ParticleSearch
 
@@ -73,6 +74,9 @@ class Liquids:
         self.law = wp.array(np.stack([own, stress, index, largest], axis=1).astype(np.float32), dtype=wp.vec4)
         self.numbers = wp.array(np.stack([density, at_rest], axis=1).astype(np.float32), dtype=wp.vec2)
         self._start = wp.clone(self.numbers)
+        buffers = len(density) if self.yields else 0
+        self._others = wp.zeros(buffers, dtype=wp.vec4)
+        self._y, self._z = ([wp.zeros(buffers, dtype=wp.vec4) for _ in range(3)] for _ in range(2))
 
     def forget(self) -> None:
         """Be as viscous as at rest."""
@@ -88,9 +92,7 @@ class Liquids:
         )
 
     def shear(self, search: ParticleSearch, method: Any) -> None:
-        """Find the viscosity of what yields at the rate that it is sheared with, between solids as they move."""
-        if not self.yields:
-            return
+        """Find the viscosity of each particle at the rate that it is sheared with, between solids as they move."""
         fluid, walls, bodies = (kind.species for kind in (search.fluid, search.walls, search.bodies))
         launch_shared(
             search.programs.yields,
@@ -98,3 +100,47 @@ class Liquids:
             inputs=[search.grid, method, self.law, fluid, walls, bodies],
             outputs=[self.numbers, search.fluid.liquid],
         )
+
+    def creep(self, search: ParticleSearch, method: Any, model: Any, dt: float) -> None:
+        """Find the velocities that the laminar viscosity of this step takes, in stages (`wsim.kernels.sph.yielding`).
+
+        Args:
+            search: Of the particles; `fluid.creep` has their velocities, and gets those.
+            method: Settings, as kernels take them.
+            model: For gravity and masses.
+            dt: Length of the step [s].
+        """
+        walls, bodies, count = search.walls.species, search.bodies.species, search.fluid.count
+        accelerate, stage = search.programs.stages
+        shared = [search.grid, method]
+        launch_shared(
+            accelerate,
+            dim=count,
+            inputs=[*shared, model.gravity, model.particle_mass, search.fluid.species, walls, bodies],
+            outputs=[self._others],
+        )
+        y, z = self._y, self._z
+        wp.copy(y[0], search.fluid.creep)
+        z[0].zero_()
+        for j in range(1, STAGES + 1):
+            last, before, now = (j - 1) % 3, (j - 2) % 3, j % 3
+            weights = wp.vec3((2.0 * j - 1.0) / j, (1.0 - j) / j, 2.0 * (2.0 * j - 1.0) / j / (STAGES**2 + STAGES))
+            fluid = _with_creep(search.fluid, y[last])
+            launch_shared(
+                stage,
+                dim=count,
+                inputs=[
+                    *(*shared, model.particle_mass, self._others, fluid, walls, bodies),
+                    *(y[before], z[last], z[before], weights, dt),
+                ],
+                outputs=[y[now], z[now]],
+            )
+        wp.copy(search.fluid.creep, z[STAGES % 3])
+
+
+def _with_creep(particles: SortedParticles, creep: wp.array) -> Any:
+    """The species with other velocities for the laminar viscosity."""
+    found: Any = Species()
+    found.assign(particles.species)
+    found.creep = creep
+    return found

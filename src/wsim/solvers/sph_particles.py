@@ -23,6 +23,7 @@ class SortedParticles:
         kind: `FLUID`, `WALLS` or `BODIES`.
         stage: Of each, where some may be parked (`wsim.kernels.sph.openings`).
         several: Whether each particle of fluid has its own liquid.
+        yields: Whether any of these yields.
 
     Attributes:
         count: Number of particles n.
@@ -44,6 +45,7 @@ class SortedParticles:
         kind: int,
         stage: wp.array | None = None,
         several: bool = False,
+        yields: bool = False,
     ) -> None:
         n = self.count = len(world)
         cells = cells_of(grid) * world_count if n else 0
@@ -66,6 +68,7 @@ class SortedParticles:
         self.species.order, self.species.world = self.order, self.world
         self.species.point, self.species.motion = self.point, self.motion
         self.species.liquid = self.liquid = wp.zeros(n if several else 0, dtype=wp.vec2)
+        self.species.creep = self.creep = wp.zeros(n if yields else 0, dtype=wp.vec4)
         self.species.stage = self.stage
         self.species.full = self.full = wp.zeros(n if kind == FLUID else 0, dtype=float)
         self.species.facing = self.facing = wp.zeros(0 if kind == FLUID else n, dtype=wp.vec4)

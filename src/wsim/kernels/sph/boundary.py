@@ -143,6 +143,8 @@ def make_extrapolate(sums: PairSums) -> wp.Kernel:
             liquid[s] = near
         artificial = method.artificial_viscosity * method.h * method.speed_of_sound * near[0]
         laminar = method.laminar_factor * near[1]
+        if wp.static(sums.yields):
+            laminar = 0.0 * laminar  # it does not ask for this velocity (`yielding`)
         m = motion[s]
         if total[0] <= 0.0:
             motion[s] = wp.vec4(m[0], m[1], m[2], DRY)

@@ -16,6 +16,7 @@ from typing import Any
 
 import warp as wp
 
+from wsim.kernels.sph.creep_sums import CREEP, SHEAR, mirrored
 from wsim.kernels.sph.gap_sums import ACROSS, BEHIND, BEYOND, GAP, GRADIENT, SEEPING, WAY, between
 from wsim.kernels.sph.grid import Grid
 from wsim.kernels.sph.liquids import (
@@ -29,7 +30,7 @@ from wsim.kernels.sph.liquids import (
     put,
 )
 from wsim.kernels.sph.rows import walk
-from wsim.kernels.sph.species import BODIES, DRY, FLUID, WALLS, Species
+from wsim.kernels.sph.species import BODIES, DRY, FLUID, KINDS, WALLS, Species
 
 BLOCK = 128  # threads of a CUDA block; 3 % quicker than 256 for sums over neighbours, on an H200
 
@@ -245,17 +246,6 @@ _MOMENTUM_AT_WALLS = (
     """,
 )
 
-_SHEAR = (
-    "const float v0 = v[0], v1 = v[1], v2 = v[2], eta2 = common[2]; float rate = 0.0f, filled = 0.0f;",
-    """
-            const float approach = (v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2;
-            const float slope = q.w * (t2 * t);
-            rate += slope * approach * approach / (r2 + eta2);
-            filled += slope * r2;
-    """,
-    "return wp::vec_t<2, float>(-slope_norm * rate, -slope_norm * filled);",
-)
-
 _FIND = """
     struct Record { float x, y, z, w; };
     const Record* __restrict__ points = reinterpret_cast<const Record*>(other.point.data);
@@ -299,11 +289,14 @@ class PairSums:
         force_in_gap: `Gap`, over walls or bodies. Takes the particle's pressure and the least that there is as v, the
             weight of the fluid as `common`.
         gradient: Sum of V grad W, over fluid.
+        creep: Force on a particle of fluid by the laminar viscosity alone per volume, over each kind.
+        creep_on_solid: The same on a particle of a solid, over fluid.
         shear: Sums of -V_j (v_ij.x_ij)^2 / r^2 dW/dr / r and of -V_j x_ij.grad W, over each kind.
         seeping: Sums of W and of W times pressure, and the fewest hops, over what its own body's particles hand on.
         find: Write the neighbours of one kind behind `start` others, but `itself`; returns how many there are then.
             For lists alone.
         several: Whether each particle of fluid has its own liquid.
+        yields: Whether any of these yields.
         options: What `wp.kernel` is to do with a kernel that sums.
     """
 
@@ -319,10 +312,13 @@ class PairSums:
     way: dict[int, wp.Function]
     force_in_gap: dict[int, wp.Function]
     gradient: wp.Function
+    creep: dict[int, wp.Function]
+    creep_on_solid: wp.Function
     shear: dict[int, wp.Function]
     seeping: wp.Function
     find: wp.Function
     several: bool
+    yields: bool
     options: dict[str, Any]
 
 
@@ -336,7 +332,12 @@ def _images(periodic: tuple[bool, bool, bool]) -> str:
 
 
 def make_pair_sums(
-    lists: bool, periodic: tuple[bool, bool, bool], branch: bool, reach: tuple[int, int], several: bool = False
+    lists: bool,
+    periodic: tuple[bool, bool, bool],
+    branch: bool,
+    reach: tuple[int, int],
+    several: bool = False,
+    yields: bool = False,
 ) -> PairSums:
     """Put the loops together.
 
@@ -349,6 +350,7 @@ def make_pair_sums(
             a quarter of the time.
         reach: Cells that the support spans along y and z.
         several: Whether each particle of fluid has its own liquid.
+        yields: Whether any of these yields.
     """
     among, at_solids, in_solids = (AMONG_LIQUIDS, LIQUID_AT_SOLIDS, SOLIDS_IN_LIQUIDS) if several else (ONE, ONE, ONE)
 
@@ -406,9 +408,12 @@ def make_pair_sums(
         way={kind: total(between(WAY, words), wp.vec3, kind) for kind, words in ACROSS.items()},
         force_in_gap={kind: total(between(GAP, words), Gap, kind) for kind, words in ACROSS.items()},
         gradient=total(GRADIENT, wp.vec3),
-        shear={kind: total(_SHEAR, wp.vec2, kind) for kind in (FLUID, WALLS, BODIES)},
+        creep={kind: total(CREEP, wp.vec3, kind, mirrored(kind, among, at_solids)) for kind in KINDS},
+        creep_on_solid=total(CREEP, wp.vec3, FLUID, in_solids | {"MIRRORED": "2.0f *"}),
+        shear={kind: total(SHEAR, wp.vec2, kind, mirrored(kind, among, at_solids)) for kind in KINDS},
         seeping=total(SEEPING, wp.vec3, BODIES),
         find=find,
         several=several,
+        yields=yields,
         options=options,
     )

@@ -14,7 +14,7 @@ from wsim.kernels.sph.neighbors import Finders, make_finders
 from wsim.kernels.sph.pair_sums import make_pair_sums
 from wsim.kernels.sph.pipes import make_fill
 from wsim.kernels.sph.push import make_look_across, make_push
-from wsim.kernels.sph.yielding import make_yield
+from wsim.kernels.sph.yielding import make_stages, make_yield
 
 
 @dataclass(frozen=True)
@@ -30,6 +30,7 @@ class Programs:
     look_across: wp.Kernel
     push: wp.Kernel
     yields: wp.Kernel
+    stages: tuple[wp.Kernel, wp.Kernel]
 
     @staticmethod
     @functools.cache
@@ -40,6 +41,7 @@ class Programs:
         reach: tuple[int, int],
         solids: tuple[int, ...],
         several: bool = False,
+        yields: bool = False,
     ) -> Programs:
         """Build the kernels, once in a process; see `make_pair_sums`.
 
@@ -50,8 +52,9 @@ class Programs:
             reach: Cells that the support spans along y and z.
             solids: `WALLS`, `BODIES`, both or none: the kinds of solids that there are.
             several: Whether each particle of fluid has its own liquid.
+            yields: Whether any of these yields.
         """
-        sums = make_pair_sums(lists, periodic, branch, reach, several)
+        sums = make_pair_sums(lists, periodic, branch, reach, several, yields)
         return Programs(
             make_finders(sums, solids),
             make_compress(sums),
@@ -62,4 +65,5 @@ class Programs:
             make_look_across(sums, solids),
             make_push(sums, solids),
             make_yield(sums, solids),
+            make_stages(sums, solids),
         )

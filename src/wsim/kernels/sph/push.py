@@ -97,7 +97,7 @@ def make_look_across(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
 def make_push(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
     """The kernel that sums the fluid's forces on the particles of bodies, given the kinds of solids."""
     of_fluid, of_walls, of_bodies = sums.force_on_solid, sums.force_in_gap[WALLS], sums.force_in_gap[BODIES]
-    gradient, seeping = sums.gradient, sums.seeping
+    gradient, seeping, creep_of_fluid = sums.gradient, sums.seeping, sums.creep_on_solid
 
     @wp.kernel(**sums.options)
     def push(
@@ -157,8 +157,12 @@ def make_push(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         if wet:
             viscous = viscosities(method, rest_density[world], viscosity[world])
             if wp.static(sums.several):
-                viscous = viscosities(method, 1.0, 1.0)
+                viscous = viscosities(method, 1.0, wp.static(0.0 if sums.yields else 1.0))
             total = of_fluid(grid, bodies, fluid, s, world, method.shape, x, v, own, viscous)
+            if wp.static(sums.yields):
+                c = load_record(bodies.creep, s)
+                u, creep = wp.vec3(c[0], c[1], c[2]), viscosities(method, 0.0, 1.0)
+                total += creep_of_fluid(grid, bodies, fluid, s, world, method.shape, x, u, 0.0, creep)
         if e[0] != 0.0 or e[1] != 0.0 or e[2] != 0.0:
             given = wp.vec3(pressure, least, 0.0)
             others = of_bodies(grid, bodies, bodies, s, world, method.shape, x, given, own, weight_of_water)
