@@ -228,7 +228,7 @@ def _fluid(prim: Usd.Prim) -> Fluid:
         velocity=to_vec3(value_of(prim, "velocity", Gf.Vec3f(0.0))),
         speed_of_sound=value_of(prim, "speedOfSound", 0.0),
         container=str(targets[0]) if targets else None,
-        volume=value_of(prim, "volume", 0.0) or None,
+        volume=value_of(prim, "volume", None),
         attenuation_length=value_of(prim, "attenuationLength", None),
         line=line_of(prim),
     )

@@ -69,8 +69,8 @@ class Fluids(Tanks):
             spacing: Distance between particles [m].
             fills: What to fill, with `level` or `volume`: a tank, or anything that is hollow as it stands: a mesh, an
                 asset such as a bowl, what several shapes make up. Tilted it holds less; closed all round it holds most.
-            level: Depth above the lowest point of its hollow, a tank's inner floor [m]; of a tank 0 for what a `tap` is
-                to pour. What fills a tank after another fluid lies on it: oil on water.
+            level: Depth above the lowest point of its hollow, a tank's inner floor [m]; 0 for what a `tap` is to pour.
+                What fills a tank after another fluid lies on it: oil on water.
             volume: Instead of `level`: of the fluid [m^3].
             size: Instead of `fills`: edges (x, y, z) of a box of fluid [m], with `position`.
             position: Centre of that box [m].

@@ -53,7 +53,9 @@ class Vessel:
         hollow, call = self.hollow, self._call
         deep, most = hollow.rim - hollow.floor, hollow.filling(hollow.rim).volume
         if level is not None:
-            depth = call.size("level", level)
+            depth = call.number("level", level, "m")
+            if depth != 0.0:
+                depth = call.size("level", level)
             if depth > deep + 1e-6:
                 call.fail(
                     f"level = {depth:g} m is above the rim of {shown(self.name)}: as it stands its hollow is "
@@ -69,8 +71,12 @@ class Vessel:
         return hollow.level_of(amount)
 
     def filled(self, level: float, spacing: float) -> tuple[Vec3, Vec3, float]:
-        """Edges and centre of the box round the fluid under a level [m], and its volume [m^3]."""
-        filling = self.hollow.filling(level)
+        """Edges and centre of the box round the fluid under a level [m], and its volume [m^3].
+
+        One that is empty yet has no height, and is as wide as the whole hollow.
+        """
+        empty = level <= self.hollow.floor
+        filling = self.hollow.filling(self.hollow.rim if empty else level)
         low, high = filling.cells.min(axis=0) - 0.5 * filling.edge, filling.cells.max(axis=0) + 0.5 * filling.edge
         low[2], high[2] = self.hollow.floor, level
         if min(high[:2] - low[:2]) < ACROSS * spacing:
@@ -80,7 +86,8 @@ class Vessel:
                 f"{min(high[:2] - low[:2]) / ACROSS:.3g}"
             )
         size, center = (high - low).tolist(), (0.5 * (low + high)).tolist()
-        return (size[0], size[1], size[2]), (center[0], center[1], center[2]), filling.volume
+        volume = 0.0 if empty else filling.volume
+        return (size[0], size[1], size[2]), (center[0], center[1], center[2]), volume
 
 
 def shapes_of(prim: Usd.Prim) -> list[Shape]:

@@ -36,7 +36,7 @@ def vessels_of(world: World, k: int = -1) -> list[Vessel]:
             upright=turn,
             shapes=frozenset(shape.prim for shape in walls),
             body=body.prim if body else None,
-            goes=_room(body) if body else None,
+            goes=_room(body) if body else _around(walls),
             world=k,
         )
     return list(found.values())
@@ -86,6 +86,13 @@ def _room(body: Body) -> tuple[Vec3, Vec3]:
     place = way_of(body)[1] if body.path else np.array([body.position])
     margin = radius * (2.0 if body.path else FREE)
     low, high = (place.min(axis=0) - margin).tolist(), (place.max(axis=0) + margin).tolist()
+    return (low[0], low[1], low[2]), (high[0], high[1], high[2])
+
+
+def _around(walls: list[Shape]) -> tuple[Vec3, Vec3]:
+    """Corners of what is upright around shapes that stand still [m]."""
+    points = np.concatenate([surface_of_wall(shape).vertices for shape in walls])
+    low, high = points.min(axis=0).tolist(), points.max(axis=0).tolist()
     return (low[0], low[1], low[2]), (high[0], high[1], high[2])
 
 

@@ -47,7 +47,7 @@ class Vessel:
     body: str | None = None
     """Label of the body that it is; None: it stands still."""
     goes: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
-    """Lower and upper corner of the room that it moves in [m]; None: it stays where its fluid starts."""
+    """Lower and upper corner of the room that it is or moves in [m]; None: it stays where its fluid starts."""
     world: int = -1
     """The world that it stands in; -1 is every world."""
 

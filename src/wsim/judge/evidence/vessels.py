@@ -10,11 +10,12 @@ from scipy.spatial import ConvexHull
 
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.geometry.shapes import Solid
+from wsim.scene.hollows import hollow_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from wsim.scene.world import Shape
+    from wsim.scene.world import Quat, Shape
 
     Floats = NDArray[np.float64]
     Bools = NDArray[np.bool_]
@@ -33,7 +34,8 @@ def strayed(
 ) -> Bools:
     """Which particles are beside or under a vessel, as of a tank: over its rim is not (T, N).
 
-    What leaves one that moves over its rim is poured, wherever it falls to.
+    What leaves one that moves, or that a tap fills, over its rim is poured, wherever it falls to; until it is in the
+    hollow again.
 
     Args:
         shapes: Of the vessel, in its frame.
@@ -42,31 +44,36 @@ def strayed(
         slack: How far beyond the hull they may be [m].
         up: Against gravity, in the world (3,).
         moves: Whether it does.
-        tapped: Whether one may come from a tap anywhere over the vessel: it has strayed when it is below that.
+        tapped: Whether one may come from a tap anywhere over the vessel.
     """
-    upward = rotate(conjugate(pose[0, 3:]), up)
-    walls, lids, top = faces_of(shapes, upward)
+    walls, lids = faces_of(shapes, rotate(conjugate(pose[0, 3:]), up))
+    hollow = hollow_of(shapes, (0.0, 0.0, 0.0), _quaternion(pose[0]), slack) if tapped else None
     found = np.empty(position.shape[:2], dtype=bool)
     poured, before = np.zeros(position.shape[1], dtype=bool), None
     for t, points in enumerate(position):  # one frame at a time: a recording may be larger than a cache
         places = rotate(conjugate(pose[t, 3:]), points - pose[t, :3])
         found[t] = (places @ walls[:, :3].T > walls[:, 3] + slack).any(axis=1)
-        if tapped:
-            found[t] &= places @ upward <= top + slack
-        if moves:
+        if moves or tapped:
             way = 0.0 if before is None else np.linalg.norm(places - before, axis=1)
             near = (places @ lids[:, :3].T - lids[:, 3]).max(axis=1, initial=-np.inf) > -slack - way
+            if hollow is not None:
+                poured &= ~hollow.holds(rotate(pose[0, 3:], np.nan_to_num(places, nan=1e9)))
             poured |= near
             found[t] &= ~poured
             before = places
     return found
 
 
-def faces_of(shapes: Sequence[Shape], up: Floats) -> tuple[Floats, Floats, float]:
-    """The hull's faces, n . x <= d behind each (K, 4): walls and floor, what closes the mouth; and its top [m]."""
+def _quaternion(pose: Floats) -> Quat:
+    x, y, z, w = pose[3:].tolist()
+    return x, y, z, w
+
+
+def faces_of(shapes: Sequence[Shape], up: Floats) -> tuple[Floats, Floats]:
+    """The hull's faces, n . x <= d behind each, (K, 4): walls and floor, and those that close the mouth."""
     surfaces = Solid([shape for shape in shapes if shape.collides]).surfaces
     vertices = np.vstack([surface.vertices for surface in surfaces])
     equations = ConvexHull(vertices).equations
     faces = np.hstack([equations[:, :3], -equations[:, 3:]])
     lid = faces[:, :3] @ up >= LID
-    return faces[~lid], faces[lid], float((vertices @ up).max())
+    return faces[~lid], faces[lid]
