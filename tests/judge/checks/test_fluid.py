@@ -77,6 +77,9 @@ def test_what_stands_still_in_a_fluid_takes_its_place(pool, removed, passes):
     )
     finding = only(CheckFluidMass().evaluate(Evidence(replace(case.recording, fluids={WATER: kept}))))
     assert finding.passed is passes and finding.expected == pytest.approx(bare - 18.0, abs=1.0)
+    # As much higher is the level that its volume puts the water at: the block reaches from the floor to over it.
+    levels = [Evidence(one).level(one.world.fluids[0]).height - WALL for one in (pool().recording, case.recording)]
+    assert levels[1] / levels[0] == pytest.approx(1.0 / (1.0 - 0.06 / (0.66 * 0.51)), rel=0.03)
 
 
 # ---- against the plan

@@ -75,3 +75,18 @@ def test_what_control_pushes_is_not_the_fluids():
 
 def test_a_recording_without_the_walls_share_is_not_asked():
     assert asked(replace(pushing((0, 0, 1), (0, 0, 1)), wall_impulse=None)) is None
+
+
+@pytest.mark.parametrize(("share", "sound"), [(1e-8, True), (1e-5, False)])
+def test_what_no_longer_pushes_has_the_rounding_of_all_that_it_did(share, sound):
+    """As of the last drops of a tank that drains: sums of single precision went through all of it."""
+    recording = pushing((0.0, 0.0, 70.0), (0.0, 0.0, -70.0))
+    late, track = recording.time > 0.25, recording.fluids[WATER]
+    body, walls = recording.applied_impulse.copy(), recording.wall_impulse.copy()
+    body[late], walls[late] = 0.0, 0.0
+    walls[-1, 2] = share * 140.0 / 30.0
+    still = {WATER: replace(track, velocity=np.zeros_like(track.velocity))}
+    world = recording.world.model_copy(update={"gravity": (0.0, 0.0, 0.0)})
+    assert (
+        asked(replace(recording, world=world, fluids=still, applied_impulse=body, wall_impulse=walls)).passed is sound
+    )

@@ -9,6 +9,7 @@ import numpy as np
 
 from wsim.judge.books.fluids import fluid_books
 from wsim.judge.checks.check import Check, Checks, listed
+from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
@@ -27,7 +28,8 @@ class CheckFluidMomentum(Check):
         books = fluid_books(evidence)
         if books is None:
             return []
-        limits = self.share * books.turnover + books.rounding
+        # What is left of the last drops in a drained tank is the rounding of sums that all of it went through.
+        limits = self.share * books.turnover + books.rounding + FLOAT32 * books.turnover.max()
         left = np.linalg.norm(books.left, axis=1)
         k = int(np.argmax(left / np.maximum(limits, 1e-300)))
         start, end = float(books.time[k]), float(books.time[k + 1])

@@ -8,17 +8,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.hollows import is_closed
 from wsim.geometry.rotations import conjugate, rotate
+from wsim.geometry.shapes import surface_of
 from wsim.judge.evidence.containment import alike, pools_of
 from wsim.judge.evidence.joints import JointTrack, track_of
 from wsim.judge.evidence.motion import Motion
 from wsim.judge.evidence.recorded import MissingError, Recorded
+from wsim.scene.contact import within
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
+    from wsim.geometry.surfaces import Surface
     from wsim.judge.verdict import Finding
     from wsim.plan.schema import Plan
     from wsim.recording.recording import FluidTrack, Recording
@@ -128,9 +132,9 @@ class Evidence(Recorded):
         return same, [each for each in others if middle[each.prim] < middle[fluid.prim]]
 
     def _level_of_volume(self, container: Container, floor: float, volume: float) -> float:
-        """The height at which the space under the surface, less the bodies in it, holds the volume."""
+        """The height at which the space under the surface, less bodies and what stands in it, holds the volume."""
         area = container.inner_size[0] * container.inner_size[1]
-        afloat = []
+        afloat = [(0.0, [solid]) for solid in self._standing_in(container)]
         for i in range(len(self.world.bodies)):
             position, rotation = self.resting_pose(i)
             p = self.local(container, position)
@@ -145,6 +149,17 @@ class Evidence(Recorded):
             else:
                 high = middle
         return (low + high) / 2
+
+    def _standing_in(self, container: Container) -> list[Surface]:
+        """What stands still in a container, but for its own walls, where it is a closed solid."""
+        half = np.array(container.inner_size)[:2] / 2
+        found = []
+        for shape in (shape for static in self.world.statics for shape in static.shapes if shape.collides):
+            if shape.kind == "plane" or within(shape.prim, container.prim):
+                continue
+            if (np.abs(self.local(container, np.array(shape.position))[:2]) < half).all():
+                found.append(surface_of(shape))
+        return [surface for surface in found if is_closed(surface)]
 
     def _level_seen(
         self, fluid: Fluid, container: Container, track: FluidTrack, chosen: NDArray[np.intp], height: float
