@@ -20,9 +20,10 @@ TANK = (0.3, 0.24, 0.2)  # that it falls into [m]
 MARGIN = 0.1  # of a tray around what stands in it [m]
 RIM = 0.1  # of a tray, at least, and over what it is to hold [m]
 INSIDE = 0.03  # of the walls, where no rain falls [m]
+WALLS, LAYERS = 30_000, 2  # particles of floor and walls, about, and layers of them
 OVER = 0.15  # of the cloud above rim or thing [m]
 SLOPE = 20.0  # of a roof [deg]
-DROPS, MOST_DROPS, FEWEST = 500, 12_000, 20
+DROPS, MOST_DROPS, FEWEST = 500, 12_000, 8
 SPACINGS = (0.0025, 0.004)  # of drops 3.1 to 5 mm wide; there are no larger ones [m]
 
 
@@ -48,7 +49,7 @@ def build_rain(cast: Cast, taken: set[str]) -> Part:
     tray = item is not None or rain.ground
     size = _tray(footprint) if tray else TANK
     edges = [tidy(edge) for edge in footprint[:2]] if tray else [tidy(edge - 2 * INSIDE) for edge in size[:2]]
-    spacing, rate = _drops(rain, edges[0] * edges[1], cast)
+    spacing, rate = _drops(rain, edges[0] * edges[1], size, cast)
     tank = tank_of(size, cast, taken)
     what, why = "tank", "the prompt gives no size"
     if tray:
@@ -105,7 +106,7 @@ def _tray(footprint: tuple[float, float, float]) -> tuple[float, float, float]:
     return round(x + 2 * MARGIN, 2), round(y + 2 * MARGIN, 2), RIM
 
 
-def _drops(rain: Flow, area: float, cast: Cast) -> tuple[float, float]:
+def _drops(rain: Flow, area: float, size: tuple[float, float, float], cast: Cast) -> tuple[float, float]:
     """The spacing of particles, each of which is a drop [m], and how much falls [m^3/s].
 
     Raises:
@@ -122,6 +123,11 @@ def _drops(rain: Flow, area: float, cast: Cast) -> tuple[float, float]:
         cast.assume(rain.words, f"for {LASTS:g} s", "the prompt does not say for how long")
     volume = fall * area * lasts
     spacing = min(max((volume / DROPS) ** (1 / 3), SPACINGS[0]), SPACINGS[1])
+    walls = size[0] * size[1] + 2.0 * (size[0] + size[1]) * size[2]
+    coarse = math.sqrt(LAYERS * walls / WALLS)
+    if coarse > spacing:
+        spacing = coarse
+        cast.assume(rain.words, f"particles {coarse:.2g} m wide", "each stands for several drops, for so wide a floor")
     count = volume / spacing**3
     if not FEWEST <= count <= MOST_DROPS:
         less = "little: it would be" if count < FEWEST else "much: it would be"
@@ -134,5 +140,5 @@ def _drops(rain: Flow, area: float, cast: Cast) -> tuple[float, float]:
 
 def _speed(spacing: float) -> float:
     """How fast a drop of a particle's volume falls in air [m/s] (Atlas, Srivastava & Sekhon 1973)."""
-    diameter = 1000.0 * spacing * (6.0 / math.pi) ** (1 / 3)
+    diameter = 1000.0 * min(spacing, SPACINGS[1]) * (6.0 / math.pi) ** (1 / 3)
     return round(9.65 - 10.3 * math.exp(-0.6 * diameter), 1)
