@@ -6,7 +6,7 @@ import math
 
 from wsim.defaults import WALL
 from wsim.errors import UserError
-from wsim.plan.schema import Objective, OpeningPlan, PlanObject, Pose, Relation
+from wsim.plan.schema import Objective, OpeningPlan, PlanObject, Relation
 from wsim.rules.cast import Cast, Flow
 from wsim.rules.contents import note_liquid
 from wsim.rules.scenes.flowing import check_alone, fluid_in, tank_of
@@ -22,7 +22,6 @@ RIM = 0.1  # of a tray, at least, and over what it is to hold [m]
 INSIDE = 0.03  # of the walls, where no rain falls [m]
 WALLS, LAYERS = 30_000, 2  # particles of floor and walls, about, and layers of them
 OVER = 0.15  # of the cloud above rim or thing [m]
-SLOPE = 20.0  # of a roof [deg]
 DROPS, MOST_DROPS, FEWEST = 500, 12_000, 8
 SPACINGS = (0.0025, 0.004)  # of drops 3.1 to 5 mm wide; there are no larger ones [m]
 
@@ -82,6 +81,11 @@ def _on(rain: Flow, cast: Cast, taken: set[str]) -> tuple[PlanObject | None, tup
     """What it falls on, and the box round it [m]."""
     if rain.on is None:
         return None, TANK
+    if rain.on.noun.family == "roof":
+        raise UserError(
+            f"{rain.on.words!r}: single drops would spring off a slope; the builtin planner lets rain fall on what is "
+            "level, such as a table or a box"
+        )
     if rain.on.count > 1:
         raise UserError(f"{rain.on.words!r}: the builtin planner lets rain fall on one thing; give one")
     if rain.on.noun.family == "solid":
@@ -89,15 +93,8 @@ def _on(rain: Flow, cast: Cast, taken: set[str]) -> tuple[PlanObject | None, tup
     [item] = bodies(rain.on, cast, taken)
     static = {"state": "static", "role": "background"}
     item = item.model_copy(update=static)
-    if rain.on.noun.family != "roof":
-        x, y = (2 * item.size[0],) * 2 if len(item.size) < 3 else item.size[:2]
-        return item.related([Relation(predicate="PLACE-IN", ref="tank")]), (x, y, item.size[-1])
-    x, y, z = item.size
-    tilt = math.radians(SLOPE)
-    wide, high = x * math.cos(tilt) + z * math.sin(tilt), x * math.sin(tilt) + z * math.cos(tilt)
-    cast.assume(rain.on.words, f"a slab at {SLOPE:g} degrees over a tray", "the prompt does not say how steep")
-    pose = Pose(position=(0.0, 0.0, tidy(WALL + RIM + high / 2)), rotation_deg=(0.0, SLOPE, 0.0))
-    return item.model_copy(update={"pose": pose}), (tidy(wide), y, tidy(RIM + high))
+    x, y = (2 * item.size[0],) * 2 if len(item.size) < 3 else item.size[:2]
+    return item.related([Relation(predicate="PLACE-IN", ref="tank")]), (x, y, item.size[-1])
 
 
 def _tray(footprint: tuple[float, float, float]) -> tuple[float, float, float]:
