@@ -128,10 +128,9 @@ def test_rain_is_as_heavy_as_is_said(prompt, fall):
 
 
 def test_what_rain_falls_on_stands_in_the_tray_that_keeps_the_water():
-    made = plan("Rain falls on a roof")
-    roof, tray = made.object("roof"), made.object("tank")
-    assert roof.state == "static"
-    assert roof.pose.rotation_deg[1] > 10.0
+    made = plan("Rain falls on a wooden box")
+    box, tray = made.object("wooden_box"), made.object("tank")
+    assert box.state == "static"
     assert opening(made).size[0] < tray.size[0]
 
 
@@ -149,6 +148,7 @@ def test_what_rain_falls_on_stands_in_the_tray_that_keeps_the_water():
         ("A tap fills a tank at 5 mm per hour", "5 mm per hour"),
         ("A gate opens and water flows out of a tank", "a gate opens"),
         ("A tap drips", "drips"),
+        ("Rain falls on a roof", "a roof"),
     ],
 )
 def test_what_cannot_be_built_is_refused_in_one_line_that_names_it(prompt, words):

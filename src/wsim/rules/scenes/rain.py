@@ -6,7 +6,7 @@ import math
 
 from wsim.defaults import WALL
 from wsim.errors import UserError
-from wsim.plan.schema import Objective, OpeningPlan, PlanObject, Pose, Relation
+from wsim.plan.schema import Objective, OpeningPlan, PlanObject, Relation
 from wsim.rules.cast import Cast, Flow
 from wsim.rules.contents import note_liquid
 from wsim.rules.scenes.flowing import check_alone, fluid_in, tank_of
@@ -20,9 +20,9 @@ TANK = (0.3, 0.24, 0.2)  # that it falls into [m]
 MARGIN = 0.1  # of a tray around what stands in it [m]
 RIM = 0.1  # of a tray, at least, and over what it is to hold [m]
 INSIDE = 0.03  # of the walls, where no rain falls [m]
+WALLS, LAYERS = 30_000, 2  # particles of floor and walls, about, and layers of them
 OVER = 0.15  # of the cloud above rim or thing [m]
-SLOPE = 20.0  # of a roof [deg]
-DROPS, MOST_DROPS, FEWEST = 500, 12_000, 20
+DROPS, MOST_DROPS, FEWEST = 500, 12_000, 8
 SPACINGS = (0.0025, 0.004)  # of drops 3.1 to 5 mm wide; there are no larger ones [m]
 
 
@@ -48,7 +48,7 @@ def build_rain(cast: Cast, taken: set[str]) -> Part:
     tray = item is not None or rain.ground
     size = _tray(footprint) if tray else TANK
     edges = [tidy(edge) for edge in footprint[:2]] if tray else [tidy(edge - 2 * INSIDE) for edge in size[:2]]
-    spacing, rate = _drops(rain, edges[0] * edges[1], cast)
+    spacing, rate = _drops(rain, edges[0] * edges[1], size, cast)
     tank = tank_of(size, cast, taken)
     what, why = "tank", "the prompt gives no size"
     if tray:
@@ -81,6 +81,11 @@ def _on(rain: Flow, cast: Cast, taken: set[str]) -> tuple[PlanObject | None, tup
     """What it falls on, and the box round it [m]."""
     if rain.on is None:
         return None, TANK
+    if rain.on.noun.family == "roof":
+        raise UserError(
+            f"{rain.on.words!r}: single drops would spring off a slope; the builtin planner lets rain fall on what is "
+            "level, such as a table or a box"
+        )
     if rain.on.count > 1:
         raise UserError(f"{rain.on.words!r}: the builtin planner lets rain fall on one thing; give one")
     if rain.on.noun.family == "solid":
@@ -88,15 +93,8 @@ def _on(rain: Flow, cast: Cast, taken: set[str]) -> tuple[PlanObject | None, tup
     [item] = bodies(rain.on, cast, taken)
     static = {"state": "static", "role": "background"}
     item = item.model_copy(update=static)
-    if rain.on.noun.family != "roof":
-        x, y = (2 * item.size[0],) * 2 if len(item.size) < 3 else item.size[:2]
-        return item.related([Relation(predicate="PLACE-IN", ref="tank")]), (x, y, item.size[-1])
-    x, y, z = item.size
-    tilt = math.radians(SLOPE)
-    wide, high = x * math.cos(tilt) + z * math.sin(tilt), x * math.sin(tilt) + z * math.cos(tilt)
-    cast.assume(rain.on.words, f"a slab at {SLOPE:g} degrees over a tray", "the prompt does not say how steep")
-    pose = Pose(position=(0.0, 0.0, tidy(WALL + RIM + high / 2)), rotation_deg=(0.0, SLOPE, 0.0))
-    return item.model_copy(update={"pose": pose}), (tidy(wide), y, tidy(RIM + high))
+    x, y = (2 * item.size[0],) * 2 if len(item.size) < 3 else item.size[:2]
+    return item.related([Relation(predicate="PLACE-IN", ref="tank")]), (x, y, item.size[-1])
 
 
 def _tray(footprint: tuple[float, float, float]) -> tuple[float, float, float]:
@@ -105,7 +103,7 @@ def _tray(footprint: tuple[float, float, float]) -> tuple[float, float, float]:
     return round(x + 2 * MARGIN, 2), round(y + 2 * MARGIN, 2), RIM
 
 
-def _drops(rain: Flow, area: float, cast: Cast) -> tuple[float, float]:
+def _drops(rain: Flow, area: float, size: tuple[float, float, float], cast: Cast) -> tuple[float, float]:
     """The spacing of particles, each of which is a drop [m], and how much falls [m^3/s].
 
     Raises:
@@ -122,6 +120,11 @@ def _drops(rain: Flow, area: float, cast: Cast) -> tuple[float, float]:
         cast.assume(rain.words, f"for {LASTS:g} s", "the prompt does not say for how long")
     volume = fall * area * lasts
     spacing = min(max((volume / DROPS) ** (1 / 3), SPACINGS[0]), SPACINGS[1])
+    walls = size[0] * size[1] + 2.0 * (size[0] + size[1]) * size[2]
+    coarse = math.sqrt(LAYERS * walls / WALLS)
+    if coarse > spacing:
+        spacing = coarse
+        cast.assume(rain.words, f"particles {coarse:.2g} m wide", "each stands for several drops, for so wide a floor")
     count = volume / spacing**3
     if not FEWEST <= count <= MOST_DROPS:
         less = "little: it would be" if count < FEWEST else "much: it would be"
@@ -134,5 +137,5 @@ def _drops(rain: Flow, area: float, cast: Cast) -> tuple[float, float]:
 
 def _speed(spacing: float) -> float:
     """How fast a drop of a particle's volume falls in air [m/s] (Atlas, Srivastava & Sekhon 1973)."""
-    diameter = 1000.0 * spacing * (6.0 / math.pi) ** (1 / 3)
+    diameter = 1000.0 * min(spacing, SPACINGS[1]) * (6.0 / math.pi) ** (1 / 3)
     return round(9.65 - 10.3 * math.exp(-0.6 * diameter), 1)
