@@ -117,7 +117,10 @@ def test_readme_has_the_planners_vocabulary() -> None:
     spelled = {"aluminum", "golden", "gray", "wooden"}  # other spellings of words that are there
     known = lexicon()
     words = {
-        word for kind in ("GROUP", "FLUID", "GROUND", "MATERIAL", "COLOR", "SCALE") for word in known.words_of(kind)
+        word
+        for kind in ("GROUP", "FLUID", "GROUND", "MATERIAL", "COLOR", "SCALE")
+        for words in known.words_of(kind)
+        for word in words.split()
     }
     ours = {key for key, noun in known.nouns.items() if noun.asset is None}
     assert (ours | words) - spelled <= said

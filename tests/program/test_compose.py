@@ -129,6 +129,21 @@ def test_a_fluids_own_density_comes_before_its_materials() -> None:
     assert "density=1025.0, color=(0.1, 0.2, 0.3)" in " ".join(compose(plan).split())
 
 
+def test_fluids_on_each_other_are_filled_from_below_with_their_own_law(tmp_path: Path) -> None:
+    """Oil stands in the plan before the water that it lies on."""
+    plan = _tank_plan()
+    relations = [Relation(predicate="PLACE-IN", ref="tank"), Relation(predicate="FREE-SURFACE-AT", value=0.8)]
+    own = Registration(density=900.0, viscosity=0.5, yield_stress=5.0, flow_index=0.8)
+    mud = PlanObject.proxy(
+        name="mud", role="fluid", primitive="fluid", state="fluid", relations=relations, registration=own
+    )
+    floating = [item for item in plan.objects if item.primitive != "box"]
+    world = _world(compose(plan.model_copy(update={"objects": [mud, *floating]})), tmp_path)
+    water, over = (next(each for each in world.fluids if each.prim.endswith(name)) for name in ("water", "mud"))
+    assert over.center[2] - over.size[2] / 2 == pytest.approx(water.center[2] + water.size[2] / 2)
+    assert (over.density, over.viscosity, over.yield_stress, over.flow_index) == (900.0, 0.5, 5.0, 0.8)
+
+
 def test_the_same_plan_gives_the_same_text() -> None:
     assert compose(_tank_plan()) == compose(Plan.model_validate_json(_tank_plan().model_dump_json()))
 

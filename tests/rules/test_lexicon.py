@@ -6,7 +6,8 @@ import pytest
 
 from wsim.errors import UserError
 from wsim.rules.actions import _RULES
-from wsim.rules.lexicon import Lexicon, _data, _groups, _nouns, _relations, _verbs, lexicon
+from wsim.rules.data import read
+from wsim.rules.lexicon import Lexicon, _groups, _nouns, _relations, _verbs, lexicon
 
 READ = {"relations": [_relations], "verbs": [_verbs], "nouns": [_groups, _nouns]}
 
@@ -29,15 +30,15 @@ def test_every_verb_has_a_rule():
     ],
 )
 def test_a_key_that_nobody_reads_is_refused(file, table, entry, key):
-    data = copy.deepcopy(_data(file))
+    data = copy.deepcopy(read(file))
     data[table][entry][key] = ["x"]
     with pytest.raises(UserError, match=f"^{file}.toml: {table} '{entry}' has no key '{key}'; it may have [^\\n]*$"):
-        for read in READ[file]:
-            read(Lexicon(), data)
+        for enter in READ[file]:
+            enter(Lexicon(), data)
 
 
 def test_a_noun_without_a_size_is_refused():
-    data = copy.deepcopy(_data("nouns"))
+    data = copy.deepcopy(read("nouns"))
     del data["noun"]["cube"]["size"]
     with pytest.raises(UserError, match=r"^nouns.toml: noun 'cube' has neither an asset nor a size"):
         _nouns(Lexicon(), data)

@@ -125,7 +125,7 @@ def test_what_was_named_before_is_meant_again():
     [
         ("A wooden block floats slowly in a tank", ["slowly"]),
         ("Three purple elephants juggle", ["elephants", "juggle"]),
-        ("A ball in a tank of oil", ["oil"]),
+        ("A ball in a tank of ketchup", ["ketchup"]),
         ("a wooden ball floats red", ["red"]),
         ("a tank floats", ["a tank floats"]),
         ("a steel tank holds water", ["a steel tank"]),

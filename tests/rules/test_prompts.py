@@ -52,7 +52,7 @@ def test_what_a_prompt_becomes(expected):
         ("A wooden bal on the floor", ["bal"]),
         ("A velvet cube rests on the ground", ["velvet"]),
         ("A turquoise ball", ["turquoise"]),
-        ("Honey pours into a bowl", ["honey"]),
+        ("Ketchup pours into a bowl", ["ketchup"]),
         ("A ball rolls quickly down a ramp", ["quickly"]),
         ("A ball orbits a cube", ["orbits"]),
         ("A 3 parsec ball", ["parsec"]),

@@ -305,6 +305,7 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
             "name": "new name", "spacing": "number > 0", "fills": "tank", "level": "number >= 0",
             "volume": "number > 0", "size": "sizes", "position": "three numbers", "container": "tank",
             "velocity": "three numbers", "density": "number > 0", "viscosity": "number >= 0",
+            "yield_stress": "number >= 0", "flow_index": "number > 0",
             "speed_of_sound": "number >= 0", "color": "colour", "attenuation_length": "number >= 0",
         },
     ),

@@ -49,7 +49,7 @@ CASES: list[tuple[Callable[[Scene], object], str]] = [
     (lambda s: s.tank("t", inner_size=(1, 1, 0)), 'tank("t"): inner_size[2] = 0 must be > 0 m'),
     (lambda s: s.tank("t", inner_size=UNIT, wall=-0.1), "wall = -0.1 must be > 0 m"),
     (lambda s: s.fluid("w", fills="tank", level=1.5, spacing=0.1), 'level = 1.5 m is above the rim of tank "tank"'),
-    (lambda s: s.fluid("w", fills="tank", level=0.5, spacing=2), "spacing = 2 m is wider than tank"),
+    (lambda s: s.fluid("w", fills="tank", level=0.5, spacing=2), "spacing = 2 m is too coarse for tank"),
     (lambda s: s.fluid("w", fills="tank", level=0.05, spacing=0.1), "must hold at least one particle"),
     (lambda s: s.fluid("w", fills="tank", level=0.5, spacing=0.001), "5e+08 particles"),
     (lambda s: s.fluid("w", fills="tank", spacing=0.1), "fills is given without level"),
@@ -176,6 +176,17 @@ def test_overlapping_fluids_are_refused(scene: Scene) -> None:
     with pytest.raises(SceneError, match='overlaps "w"'):
         scene.fluid("v", size=(0.5, 0.5, 0.5), position=(0, 0, 0.3), spacing=0.1)
     scene.fluid("above", size=(0.5, 0.5, 0.3), position=(0, 0, 0.67), spacing=0.1)
+
+
+def test_what_fills_a_tank_after_another_fluid_lies_on_it(scene: Scene) -> None:
+    water = scene.fluid("water", fills="tank", level=0.3, spacing=0.1)
+    with pytest.raises(SceneError, match=re.escape('level = 0.3 m is not above "water", which fills tank "tank"')):
+        scene.fluid("oil", fills="tank", level=0.3, spacing=0.1, density=900.0)
+    oil = scene.fluid("oil", fills="tank", level=0.5, spacing=0.1, density=900.0)
+    foam = scene.fluid("foam", fills="tank", volume=0.2 * oil.size[0] * oil.size[1], spacing=0.1, density=300.0)
+    assert oil.size[2] == pytest.approx(0.2)
+    assert oil.surface == pytest.approx(water.surface + 0.2)
+    assert foam.surface == pytest.approx(oil.surface + 0.2)
 
 
 def test_a_loop_without_a_plain_joint_is_refused() -> None:

@@ -177,7 +177,7 @@ def test_water_at_rest_is_level_and_reaches_the_walls() -> None:
 
 def test_what_is_under_water_is_seen_and_named() -> None:
     world, fluids = stages.aquarium(wave=0.0)
-    image = draw(world, fluids, style=Style(), width=320)
+    image = draw(world, fluids, style=Style(refraction=False), width=320)
     dry = draw(world, {}, style=Style(), width=320)
     assert (image.shape_index == dry.shape_index).all()
     ball_index = world_index(world, "/World/ball/geometry")

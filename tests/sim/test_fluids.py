@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from wsim.geometry.shapes import into, kind_of
 from wsim.scene import Scene
 from wsim.scene.describe import describe
 from wsim.scene.world import Body, Fluid, Shape, World
@@ -109,3 +110,26 @@ def test_thrown_water_flies_on(tmp_path) -> None:
         assert flown == pytest.approx(0.2)
         fallen = 0.5 * 9.81 * flown * (flown + simulation.dt)
         assert at - start == pytest.approx(flown * np.array(thrown) - [0.0, 0.0, fallen], abs=1e-4)
+
+
+@pytest.mark.parametrize(("middle", "count"), [(0.1, 640), (-0.02, 272), (0.0, 320)])
+def test_a_block_that_reaches_into_the_ground_is_cut_by_it(tmp_path, middle, count) -> None:
+    """8 x 8 x 10 particles; what would be under the ground had pressures of no meaning."""
+    scene = Scene()
+    scene.ground()
+    scene.fluid("water", size=(0.2, 0.2, 0.25), position=(0.0, 0.0, middle + 0.025), spacing=SPACING)
+    scene.save(stage := tmp_path / "stage.usda")
+    position = build_model(stage, describe(stage), "cpu").model.particle_q.numpy()
+    assert len(position) == pytest.approx(count, abs=64) and position[:, 2].min() > 0.3 * SPACING
+
+
+def test_a_block_over_the_wall_of_a_tank_is_not_in_the_glass(tmp_path) -> None:
+    scene = Scene()
+    scene.tank("tank", inner_size=(0.4, 0.4, 0.3))
+    scene.fluid("water", size=(0.2, 0.2, 0.1), position=(0.2, 0.0, 0.15), spacing=SPACING)
+    scene.save(stage := tmp_path / "stage.usda")
+    world = describe(stage)
+    position = build_model(stage, world, "cpu").model.particle_q.numpy()
+    walls = [shape for static in world.statics for shape in static.shapes]
+    assert len(position) < 256
+    assert max(kind_of(shape).depth(into(shape, position.astype(float))).max() for shape in walls) < 0.0

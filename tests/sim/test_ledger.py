@@ -51,6 +51,26 @@ def test_a_motors_work_is_the_energy_that_an_arm_gains(tmp_path):
     assert recording.scalars["drive/hinge"][1:] == pytest.approx(effort[1:], rel=0.05, abs=2.0)
 
 
+def test_a_motors_work_beside_water_is_that_of_steps_of_first_order(tmp_path):
+    """A lift at 0.6 m/s: the spring's stretch at a step's start carries the weight, at its end 8 N less."""
+
+    def build(scene):
+        scene.simulation(duration=0.5, frame_rate=24.0)
+        lift = scene.box("lift", size=(0.3, 0.3, 0.1), density=500.0, position=(0.0, 0.0, 1.0))
+        motor = Drive(position=0.0, stiffness=20_000.0, damping=500.0)
+        slide = scene.joint_prismatic("slide", None, lift, axis="Z", drive=motor)
+        scene.schedule("up", slide, "position", times=(0.05, 0.45), values=(0.0, 0.24))
+        scene.fluid("water", size=(0.1, 0.1, 0.1), position=(1.0, 0.0, 0.05), spacing=0.02)
+        scene.ground()
+
+    recording = run(tmp_path, build)
+    motion = Evidence(recording).motion
+    energy = (motion.kinetic + motion.potential)[:, 0]
+    work = np.cumsum(recording.scalars["work/drives"])
+    assert np.ptp(energy) > 10.0  # [J]
+    assert work - work[0] == pytest.approx(energy - energy[0], abs=0.01 * np.ptp(energy))
+
+
 class Push:
     """Pushes the only body."""
 

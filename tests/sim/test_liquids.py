@@ -147,3 +147,17 @@ def test_an_opaque_liquid_turned_from_the_sun_is_darker_and_a_clear_one_is_fille
             sides[name, side] = linear(image.rgb[8:24, 8:24]).mean()
     assert sides["milk", 1.0] > 1.5 * sides["milk", -1.0]
     assert sides["water", 1.0] == pytest.approx(sides["water", -1.0], rel=0.05)
+
+
+@pytest.mark.parametrize("lap", [-0.004, 0.004])
+def test_two_liquids_on_each_other_are_drawn_each_in_its_own_colour(lap: float) -> None:
+    """Light through both is exp(-a d - a' d'), whether their surfaces overlap by a little or leave a little air."""
+    low, high = block(0.08, 0.01, **COLA), block(0.06, 0.01, **OIL)
+    high = high.model_copy(update={"prim": "/World/oil", "center": (0.0, 0.0, 0.08 + 0.03)})
+    wet = World(statics=[plate()], fluids=[low, high], cameras=[above()])
+    points = {low.prim: stages.particles(low), high.prim: stages.particles(high) - (0.0, 0.0, lap)}
+    bare = linear(draw(wet.model_copy(update={"fluids": []}), {}, ONLY_ABSORBS).rgb[8:24, 8:24]).mean(axis=(0, 1))
+    seen = linear(draw(wet, points, ONLY_ABSORBS).rgb[8:24, 8:24]).mean(axis=(0, 1))
+    a, b = (render_materials.extinction_of_fluid(fluid) for fluid in (low, high))
+    expected = np.exp(-a * 0.08 - b * 0.06)
+    assert seen / bare == pytest.approx(expected, rel=(0.1 * 0.01 + abs(lap)) * max(a.max(), b.max()) + 0.02, abs=0.002)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from wsim import recording
+from wsim.errors import UserError
 from wsim.judge.decide import judge
 from wsim.scene import Scene
 from wsim.sim import Simulation
@@ -96,6 +97,15 @@ def test_worlds_of_a_batch_have_taps_of_their_own(tmp_path):
         simulation.step()
     come = simulation.fluid.openings.come()
     assert come == pytest.approx(np.array([1.0, 2.0]) * 1000.0 * RATE * 0.3, abs=14 * 1000.0 * SPACING**3)
+
+
+def test_a_world_that_the_solver_has_no_room_for_is_refused_in_a_line(tmp_path):
+    scene = Scene()
+    tank = scene.tank("tank", inner_size=(0.4, 0.4, 0.3))
+    water = scene.fluid("water", fills=tank, level=0.1, spacing=SPACING)
+    scene.tap("tap", water, rate=RATE, position=(9e3, 9e3, 9e3), radius=0.05)
+    with pytest.raises(UserError, match="grid cells; use a coarser spacing or a smaller domain"):
+        Simulation(scene.save(tmp_path / "far.usda"), device="cpu")
 
 
 def test_a_tank_that_starts_empty_is_filled(tmp_path):

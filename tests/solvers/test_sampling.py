@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from wsim.geometry.filled import box_lattice
-from wsim.solvers.sampling import container_walls
+from wsim.solvers.sampling import container_walls, layers_within
 
 
 def test_a_boxs_lattice_has_its_volume():
@@ -45,3 +45,13 @@ def test_a_plane_has_one_layer_that_stands_for_the_depth():
     box = box_lattice(np.array([0.2, 1.0, 0.1]), 0.05, plane=True)
     assert (box.position[:, 1] == 0.0).all()
     assert box.volume.sum() == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize(
+    ("support", "layers"), [(0.13, 2), (0.15, 2), (0.16, 3), (0.2, 3), (0.204, 3), (0.25, 4), (0.06, 1)]
+)
+def test_the_layers_are_those_that_water_half_a_spacing_off_the_wall_sees(support, layers):
+    assert layers_within(support, 0.05) == layers
+    seen = np.arange(1, 9) * 0.05  # from half a spacing before the wall to the middle of each layer
+    pull = np.maximum(1.0 - seen / support, 0.0) ** 3 * seen  # Wendland's, up to a factor
+    assert pull[layers:].sum() <= 3e-4 * pull[0]

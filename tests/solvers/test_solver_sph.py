@@ -267,12 +267,3 @@ def test_check_counts_what_has_left_the_domain():
     position[:2] = (0.0, 0.0, -5.0)
     state.particle_q.assign(position)
     assert solver.check(state) == 2
-
-
-def test_only_boxes_stand_in_a_plane():
-    builder = make_builder()
-    builder.add_particle((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 1.0)
-    builder.add_shape_sphere(builder.add_body(), radius=0.1)
-    model = builder.finalize(device="cpu")
-    with pytest.raises(ValueError, match="SPHERE in a flow of 2 dimensions"):
-        SolverSPH(model, SolverSPH.Config(speed_of_sound=10.0, dimensions=2))

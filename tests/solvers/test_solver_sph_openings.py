@@ -10,7 +10,7 @@ import warp as wp
 from wsim.geometry.filled import box_lattice
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
-from wsim.solvers.sph_mouths import Drain, Tap, places_of, pool_for, poured_by
+from wsim.solvers.sph_mouths import Drain, Tap, depth_of, in_pipe, places_of, pool_for, poured_by
 
 RHO, G, WALL = 1000.0, 9.81, 0.02
 STEP = 0.025  # spacing [m]
@@ -39,15 +39,17 @@ def add_tank(builder: newton.ModelBuilder, size=TANK) -> OpenBox:
     return OpenBox((0.0, 0.0, z / 2), size, shapes=frozenset(names))
 
 
-def add_water(builder: newton.ModelBuilder, depth: float, pool: int, size=TANK) -> None:
-    """Water at rest on z = 0, and particles that wait."""
+def add_water(builder: newton.ModelBuilder, depth: float, pool: int, pipes, size=TANK) -> None:
+    """Water at rest on z = 0, but where `pipes` says that some is, and particles that wait."""
     if depth:
         cells = box_lattice(np.array([*size[:2], depth]), STEP)
         position = cells.position + np.array([0.0, 0.0, depth / 2])
+        apart = ~pipes(position)
+        position = position[apart]
         builder.add_particles(
             pos=position.tolist(),
             vel=[(0.0, 0.0, 0.0)] * len(position),
-            mass=(RHO * cells.volume).tolist(),
+            mass=(RHO * cells.volume[apart]).tolist(),
             custom_attributes={"sph:pressure": (RHO * G * (depth - position[:, 2])).tolist()},
         )
     nowhere = [(0.0, 0.0, 0.0)] * pool
@@ -61,7 +63,8 @@ class Flow:
         self.config = SolverSPH.Config(spacing=STEP, speed_of_sound=10.0 * fast)
         single = empty_builder()
         boxes = (add_tank(single),) if tank else ()
-        add_water(single, depth, pool_for(taps, self.config, STEP**3, 2.0) if pool is None else pool)
+        pool = pool_for(taps, self.config, STEP**3, 2.0) if pool is None else pool
+        add_water(single, depth, pool, lambda x: self.in_pipes(taps, x, 0.4 * STEP))
         builder = single
         if worlds > 1:
             builder = empty_builder()
@@ -70,6 +73,10 @@ class Flow:
         self.solver = SolverSPH(self.model, self.config, boxes, taps, drains)
         self.state, self.time = self.model.state(), 0.0
         self.at_start = self.held()
+
+    def in_pipes(self, taps, position, margin=0.0):
+        inside = [in_pipe(tap, self.config, STEP**3, position, margin) for tap in taps]
+        return np.any(inside, axis=0) if inside else np.zeros(len(position), dtype=bool)
 
     def go(self, seconds: float) -> None:
         steps = math.ceil(seconds / self.config.max_time_step)
@@ -116,6 +123,30 @@ def test_a_tap_raises_the_level_of_a_tank_by_its_volume_over_the_area(depth):
     rise = 2.0 * (inside[:, 2].mean() - still)
     assert rise == pytest.approx(4.5 / RHO / 0.09, abs=STEP)  # Q t / A
     assert (np.abs(place[:, :2]) < 0.15).all() and (place[:, 2] > 0.0).all()
+
+
+@pytest.mark.parametrize(
+    ("mouth", "way"),
+    [((0.0, 0.0, 0.0), (0.0, 0.0, 1.0)), ((0.0, 0.0, 0.04), (0.0, 0.0, 1.0)), ((-0.02, 0.0, 0.1), (1.0, 0.0, 0.3))],
+    ids=["floor", "up", "aslant"],
+)
+def test_a_tap_under_water_raises_the_level_by_what_it_pours(mouth, way):
+    """Its pipe is in the floor, or partly, or in the water: none gets into it, none is pressed into less room by it."""
+    radius = 0.05
+    tap = Tap(mouth, way, rate=0.004, radius=radius, times=(1.0,), rates=(0.0,))
+    flow = Flow(0.15, (tap,), fast=2.5)
+    flow.go(1.4)
+    place, _ = flow.free()
+    assert flow.solver.check(flow.state) == 0
+    assert not flow.in_pipes((tap,), place, -0.01 * STEP).any()
+    assert np.sum(place[:, 2] < 0.04 * STEP) < 10  # on the floor; where they are pressed onto it some 50
+    assert flow.unaccounted() < 1e-6
+    depth = depth_of(tap, flow.config, STEP**3)
+    in_tank = min(depth, mouth[2]) if mouth[0] == 0.0 else depth  # of the pipe, under the surface all along
+    expected = flow.held() / RHO / 0.09 + math.pi * radius**2 * in_tank / 0.09
+    layer = round(0.09 / STEP**2)
+    top = np.sort(place[:, 2])[-layer:].mean() + STEP / 2
+    assert top == pytest.approx(expected, abs=0.4 * STEP)
 
 
 def test_a_jet_goes_as_a_thrown_stone_does():
@@ -194,6 +225,14 @@ def test_openings_tell_what_momentum_they_give():
     assert (
         max(unbalanced(flow, flow.config.max_time_step) for _ in range(200)) < 3e-4
     )  # single precision; measured 4e-5
+
+
+def test_a_pipe_under_water_tells_what_momentum_its_wall_gives():
+    flow = Flow(0.15, (Tap((0.0, 0.0, 0.1), (0.3, 0.0, 1.0), rate=0.004, radius=0.05),))
+    flow.go(0.3)
+    flow.solver.take_wall_impulse()
+    flow.solver.openings.take_impulse()
+    assert max(unbalanced(flow, flow.config.max_time_step) for _ in range(100)) < 3e-4
 
 
 def test_a_run_repeats_bit_for_bit_and_worlds_alike_are_alike():

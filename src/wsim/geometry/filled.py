@@ -34,11 +34,11 @@ def lattice_axis(length: float, spacing: float) -> tuple[int, float]:
 def box_lattice(size: Array, spacing: float, plane: bool = False) -> Samples:
     """Cell centres of a box of edge lengths `size` [m] about the origin; the volumes add up to the box's.
 
-    With `plane` there is one cell along y, as deep as the box.
+    With `plane` there is one cell along y, a metre deep whatever the box is.
     """
     axes = [lattice_axis(float(length), spacing) for length in size]
     if plane:
-        axes[1] = (1, float(size[1]))
+        axes[1] = (1, 1.0)
     ticks = [(np.arange(count) + 0.5) * edge - 0.5 * count * edge for count, edge in axes]
     position = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
     return Samples(position, np.full(len(position), np.prod([edge for _, edge in axes])))

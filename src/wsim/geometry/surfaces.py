@@ -56,24 +56,22 @@ def box_surface(edges: tuple[float, ...]) -> Surface:
     return Surface(corners, np.array(triangles, dtype=np.intp))
 
 
-def arc(radius: float, height: float) -> tuple[Floats, Floats]:
+def arc(radius: float, height: float, along: int = _ALONG) -> tuple[Floats, Floats]:
     """The profile (radius, z) [m] of a sphere that is pulled apart by `height` at its middle."""
-    angle = np.linspace(-math.pi / 2, math.pi / 2, 2 * (_ALONG // 2))
+    angle = np.linspace(-math.pi / 2, math.pi / 2, 2 * (along // 2))
     return radius * np.cos(angle), radius * np.sin(angle) + np.sign(angle) * height / 2
 
 
-def revolved(radius: Floats, z: Floats, volume: float, radial: bool = False) -> Surface:
+def revolved(radius: Floats, z: Floats, volume: float, radial: bool = False, around: int = _AROUND) -> Surface:
     """A profile turned about Z, then scaled to its true volume [m^3], radially only or all round."""
-    angle = np.linspace(0.0, 2 * math.pi, _AROUND, endpoint=False)
+    angle = np.linspace(0.0, 2 * math.pi, around, endpoint=False)
     ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    vertices = np.concatenate(
-        [np.column_stack([r * ring, np.full(_AROUND, h)]) for r, h in zip(radius, z, strict=True)]
-    )
-    i = np.arange(_AROUND)
-    j = (i + 1) % _AROUND
+    vertices = np.concatenate([np.column_stack([r * ring, np.full(around, h)]) for r, h in zip(radius, z, strict=True)])
+    i = np.arange(around)
+    j = (i + 1) % around
     triangles = []
     for k in range(len(radius) - 1):
-        a, b = k * _AROUND, (k + 1) * _AROUND
+        a, b = k * around, (k + 1) * around
         triangles += [np.stack([a + i, a + j, b + j], axis=1), np.stack([a + i, b + j, b + i], axis=1)]
     mesh = Surface(vertices, np.concatenate(triangles))
     ratio = volume / mesh.volume

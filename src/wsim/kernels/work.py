@@ -40,6 +40,9 @@ def accumulate_drive(
     effort: wp.array(dtype=wp.float32),  # of the drives at the step's end
     joint_f: wp.array(dtype=wp.float32),  # of the controller
     armature: wp.array(dtype=wp.float32),  # of rotors, which keep a part
+    stiffness: wp.array(dtype=wp.float32),  # of the drives
+    strength: wp.array(dtype=wp.float32),
+    first_order: bool,
     before: wp.array(dtype=wp.float32),
     after: wp.array(dtype=wp.float32),
     dt: float,
@@ -51,12 +54,15 @@ def accumulate_drive(
     """Add a step's work [J] on each degree of freedom, and what the effort's change in the step leaves open of it.
 
     The effort is taken as the mean of both ends (trapezoidal rule), which is right but for the product of both changes.
-    What rotors gain in the step does not come to the bodies.
+    A step of first order takes a drive's spring as it was at its start, and its damper as it is at its end. What rotors
+    gain in the step does not come to the bodies.
     """
     dof = wp.tid()
     change = effort[dof] - last[dof]
     mean = 0.5 * (before[dof] + after[dof])
     push = effort[dof] - 0.5 * change
+    if first_order:
+        push = wp.clamp(effort[dof] + stiffness[dof] * dt * after[dof], -strength[dof], strength[dof])
     open_ = wp.abs(change * (after[dof] - before[dof]))
     spun = armature[dof] * mean * (after[dof] - before[dof])
     work[dof] = work[dof] + dt * (push + joint_f[dof]) * mean - spun

@@ -54,8 +54,9 @@ def run_tools(desk: Desk) -> dict[str, Tool]:
 
     tools = (
         Tool(
-            "make_plan", "Start a new run with the builtin planner's plan of a prompt. It knows tanks of water, the "
-            "ground, tables, ramps and pendulums; of other words it says which it does not know.",
+            "make_plan", "Start a new run with the builtin planner's plan of a prompt. It knows tanks of water and "
+            "other liquids, taps, rain, the ground, tables, ramps and pendulums; of other words it says which it does "
+            "not know.",
             MakePlan, make_plan, writes=True, needs_run=False, narrow="read_plan with one part shows the rest",
         ),
         Tool(

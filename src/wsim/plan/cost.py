@@ -19,6 +19,7 @@ from dataclasses import dataclass
 
 from wsim.defaults import GRAVITY
 from wsim.plan.drawing.silhouettes import scene_of
+from wsim.plan.layout.openings import mouth_of
 from wsim.plan.schema import Plan
 from wsim.plan.spacing import spacing_of
 
@@ -70,11 +71,12 @@ def cost_of(plan: Plan) -> Cost:
     driven = any(item.primitive == "vehicle" for item in plan.objects)
     step = min(plan.simulation.time_step or LARGEST_STEP, STEERED_STEP if driven else LARGEST_STEP)
     if wet:
-        speed = max(math.sqrt(GRAVITY * max(box[2] for box, _ in wet)), _fall(plan))
+        speed = max(math.sqrt(GRAVITY * max(max(box[2] for box, _ in wet), spacing)), _fall(plan), _jet(plan))
         step = min(step, COURANT * SMOOTHING * spacing / (SOUND_OVER_SPEED * speed))
     frames = max(1, round(plan.simulation.duration * plan.simulation.frame_rate))
     steps = frames * max(1, math.ceil(1.0 / plan.simulation.frame_rate / step - 1e-9))
-    fluid = round(sum(math.prod(box) / apart**3 for box, apart in wet))
+    comes = sum(each.poured(plan.simulation.duration) for each in plan.openings)
+    fluid = round(sum(math.prod(box) / apart**3 for box, apart in wet) + (comes / spacing**3 if wet else 0.0))
     others = round(_others(plan, boxes, spacing)) if wet else 0
     vehicles = sum(item.primitive == "vehicle" for item in plan.objects)
     robots = sum(item.primitive == "robot" for item in plan.objects)
@@ -110,6 +112,13 @@ def _fall(plan: Plan) -> float:
     """Speed of what falls farthest before it meets the fluid [m/s]."""
     drops = [row.value or 0.0 for item in plan.objects for row in item.relations if row.predicate == "SPAWNED-ABOVE"]
     return math.sqrt(2 * GRAVITY * max(drops, default=0.0))
+
+
+def _jet(plan: Plan) -> float:
+    """Speed of what comes out of a tap, or falls as rain, where it meets the floor [m/s]."""
+    taps = [each for each in plan.openings if each.kind == "tap"]
+    speeds = [(each.drop_speed or (each.rate or 0.0) / each.area, mouth_of(plan, each)[2]) for each in taps]
+    return max((math.sqrt(speed**2 + 2 * GRAVITY * max(high, 0.0)) for speed, high in speeds), default=0.0)
 
 
 def _round(count: float) -> str:

@@ -395,4 +395,5 @@ _RULES: dict[str, Callable[[Reader, Thing, Action], None]] = {
     "drive": wheels.drive, "cross": wheels.cross, "leave": wheels.leave, "reach": wheels.leave,
     "stop": _stop, "climb": _come_again, "die": _come_again,
     "stack": _stack, "face": _face, "rest": _rest, "start": _rest, "hold": _refused, "pour": _refused, "fill": _refused,
+    "drain": _refused, "empty": _refused, "open": _refused, "close": _refused,
 }  # fmt: skip

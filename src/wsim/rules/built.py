@@ -41,7 +41,7 @@ def check_built(plan: Plan, cast: Cast, names: Names) -> None:
         NotUnderstood: A thing is not as often, or not where, or does not go, as it is said.
         UserError: Two would run into each other, and are not said to.
     """
-    if cast.family(*_OWN) or cast.pour is not None:
+    if cast.family(*_OWN) or cast.pour is not None or cast.flows:
         return
     for thing in cast.things:
         own = [plan.object(name) for name in names.get(id(thing), [])]

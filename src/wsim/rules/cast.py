@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from wsim.plan.schema import Assumption, AssumptionKind
 from wsim.rules.lexicon import Noun, lexicon
+from wsim.rules.liquids import Filled, Liquid, colored, liquids
 from wsim.rules.phrases import Action, Phrase
 
 ROUND = ("sphere", "cylinder", "capsule")
@@ -108,13 +109,61 @@ class Pour:
 
 
 @dataclass
+class Flow:
+    """What lets fluid into a tank or a vessel, or out of it.
+
+    Attributes:
+        kind: "tap", "rain" or "drain".
+        words: The prompt's for it.
+        vessel: What it is over or in; None is the tank.
+        rate: How much comes [m^3/s]; of rain how much falls on an area [m/s].
+        height: Of its mouth over the rim [m].
+        width: Of a hole [m].
+        start: When it opens [s].
+        lasts: How long it is open [s].
+        level: Up to which it fills [m].
+        volume: That it pours [m^3].
+        wall: Whether a hole is in a wall, not in the floor.
+        empties: Whether a hole is said to let out all of it.
+        on: What rain falls on.
+        ground: Whether that is the ground.
+        said: The numbers of these that the prompt gives; the scene adds to the others.
+    """
+
+    kind: str
+    words: str
+    vessel: Thing | None = None
+    rate: float | None = None
+    height: float | None = None
+    width: float | None = None
+    start: float | None = None
+    lasts: float | None = None
+    level: float | None = None
+    volume: float | None = None
+    wall: bool = False
+    empties: bool = False
+    on: Thing | None = None
+    ground: bool = False
+    said: dict[str, float] = field(default_factory=dict)
+
+    def settle(self) -> None:
+        """Keep what the prompt has said, before the scene adds to it."""
+        names = ("rate", "width", "start", "lasts", "volume", "height")
+        self.said = {name: value for name in names if (value := getattr(self, name)) is not None}
+
+
+@dataclass
 class Cast:
     """All that the prompt speaks of."""
 
     things: list[Thing] = field(default_factory=list)
     tank: str | None = None  # the prompt's words for it, if it was named
-    water: str | None = None
+    water: str | None = None  # the same, of what fills it
+    filled: Filled | None = None  # with what, and how much, where that is said
+    share: float | None = None  # of its height that it is full; 0 where it is said to be empty
+    stands: bool = False  # whether it is said to hold that from the start
     pour: Pour | None = None
+    flows: list[Flow] = field(default_factory=list)  # what comes in and goes out
     ground: str | None = None  # the ground's material, if it is said
     only: list[tuple[Thing, str]] = field(default_factory=list)  # what alone of all in the water does what
     said: list[tuple[Thing, Action]] = field(default_factory=list)  # all that things are said to do
@@ -142,9 +191,17 @@ class Cast:
         return usual
 
     @property
+    def liquid(self) -> Liquid:
+        """What fills the tank or is poured."""
+        if self.filled is None:
+            return liquids()["water"]
+        color = lexicon().colors[self.filled.color] if self.filled.color is not None else None
+        return colored(liquids()[self.filled.liquid], color)
+
+    @property
     def wet(self) -> bool:
         """Whether the scene has a tank of water that stands in it from the start."""
-        if self.pour is not None:
+        if self.pour is not None or self.flows:
             return False
         return self.tank is not None or self.water is not None or any(thing.place == "water" for thing in self.things)
 

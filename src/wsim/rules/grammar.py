@@ -121,8 +121,6 @@ class _Clauses(Wheres):
                 action.places.append(place)
         if (action.particle or "") not in (*self.tokens.known.particles[action.verb], ""):
             raise self.tokens.fail(children[lead].start_pos)
-        if action.verb == "fill" and not all(thing.filled for thing in things):
-            raise self.tokens.fail(children[lead].start_pos)
         action.places += [Place("by", child, words=child.words) for child in children[by:] if isinstance(child, Phrase)]
         action.places += [child for child in children[by:] if isinstance(child, Place)]
         return Clause(things, [action])
@@ -174,7 +172,7 @@ class _Clauses(Wheres):
 
     def within(self, meta: Any, children: list[Any]) -> Place:
         phrase = next(child for child in children if isinstance(child, Phrase))
-        phrase.filled = phrase.filled or any(is_of(child, "FILLED") for child in children)
+        phrase.filled = phrase.filled or next((meant(child) for child in children if is_of(child, "FILLED")), None)
         return Place(meant(children[-1]), phrase, words=self._words(meta))
 
     def link(self, _meta: Any, children: list[Any]) -> Any:
@@ -208,6 +206,24 @@ class _Clauses(Wheres):
             raise self.tokens.fail(meta.start_pos)
         if action.target is not None and action.verb not in known.objects:
             raise self.tokens.fail(verb.start_pos)
+        return action
+
+    def fills(self, meta: Any, children: list[Any]) -> Action:
+        """ "A tank fills with water from a tap"."""
+        verb = next(child for child in children if is_of(child, "VERB", "ING"))
+        if meant(verb) != "fill":
+            raise self.tokens.fail(verb.end_pos or 0)
+        return self.is_full(meta, [child for child in children if child is not verb])
+
+    def is_full(self, meta: Any, children: list[Any]) -> Action:
+        """ "A tank is filled with water"."""
+        action = Action("fill", self._words(meta), at=span(meta))
+        full = Phrase("tank", self._words(meta))
+        self._modify(
+            full, next(child for child in children if isinstance(child, tuple) or is_of(child, "FILLED", "FULL"))
+        )
+        action.places = [Place("full", words=self._words(meta), full=full)]
+        action.places += [child for child in children if isinstance(child, Place)]
         return action
 
     def negated(self, meta: Any, children: list[Any]) -> Action:

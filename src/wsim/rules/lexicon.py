@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -17,6 +16,8 @@ from wsim.assets.sources import sources
 from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.schema import Material
+from wsim.rules.data import read
+from wsim.rules.liquids import Filled, flow_units, liquid_words
 
 Family = Literal[
     "solid",
@@ -37,6 +38,10 @@ Family = Literal[
     "turntable",
     "rope",
     "bob",
+    "tap",
+    "rain",
+    "drain",
+    "roof",
 ]
 Words = tuple[str, ...]
 BALL = "sport/ball"  # the catalogue's category of what is round and rolls
@@ -84,7 +89,7 @@ class Named:
 
     noun: str
     plural: bool
-    filled: bool = False  # a container that the word itself says to hold water
+    filled: Filled | None = None  # what a container holds by the word itself
 
 
 @dataclass(frozen=True)
@@ -142,10 +147,6 @@ class Lexicon:
         self.entries.setdefault(tuple(words.split()), Entry(terminal, value))
 
 
-def _data(name: str) -> dict[str, Any]:
-    return tomllib.loads((files("wsim.rules") / "language" / f"{name}.toml").read_text(encoding="utf-8"))
-
-
 def lexicon() -> Lexicon:
     """The lexicon, read once, and again when the user's assets have changed."""
     return _lexicon(stamp())
@@ -154,17 +155,19 @@ def lexicon() -> Lexicon:
 @lru_cache(maxsize=2)
 def _lexicon(_assets: tuple[str, int]) -> Lexicon:
     made = Lexicon()
-    _relations(made, _data("relations"))
-    _quantities(made, _data("quantities"))
-    _materials(made, _data("materials"))
-    _verbs(made, _data("verbs"))
-    nouns = _data("nouns")
+    _relations(made, read("relations"))
+    _quantities(made, read("quantities"))
+    _materials(made, read("materials"))
+    _verbs(made, read("verbs"))
+    nouns = read("nouns")
     _groups(made, nouns)
+    for words, terminal, value in liquid_words():
+        made.add(words, terminal, value)
     _nouns(made, nouns)
     made.stuff |= nouns["stuff"]
     _others(made)
-    _measures(made, _data("quantities"))
-    _commands(made, _data("verbs"))  # last: what is a thing or does something, too, is that
+    _measures(made, read("quantities"))
+    _commands(made, read("verbs"))  # last: what is a thing or does something, too, is that
     _robots(made)
     return made
 
@@ -232,6 +235,7 @@ def _quantities(made: Lexicon, data: dict[str, Any]) -> None:
         made.add(word, "ANGLE", angle)
     for word, axis in data["dimension"].items():
         made.add(word, "DIMENSION", axis)
+    made.units |= flow_units(data["unit"]["volume"], data["unit"].pop("depth"))
     for kind, units in data["unit"].items():
         for words, factor in units.items():
             made.units[tuple(words.split())] = (kind.upper(), factor)
@@ -288,7 +292,7 @@ def _groups(made: Lexicon, data: dict[str, Any]) -> None:
         made.groups[arrangement] = fields["axis"]
         for word in fields["words"]:
             made.add(word, "GROUP", arrangement)
-    for terminal, section in (("PART", "part"), ("FLUID", "fluid"), ("GROUND", "ground")):
+    for terminal, section in (("PART", "part"), ("GROUND", "ground")):
         for key, all_words in data[section].items():
             for word in all_words:
                 made.add(word, terminal, key)
@@ -301,7 +305,7 @@ def _nouns(made: Lexicon, data: dict[str, Any]) -> None:
         noun = made.nouns[key] = _noun(key, fields, asset)
         words = [*fields.get("words", ()), *(_names(asset, made) if asset is not None else ())]
         for filled in fields.get("filled", []):
-            made.add(filled, "NOUN", Named(noun.key, plural=False, filled=True))
+            made.add(filled, "NOUN", Named(noun.key, plural=False, filled=Filled("water")))
         _name(made, key, words, fields.get("plurals", ()))
 
 

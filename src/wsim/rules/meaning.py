@@ -7,13 +7,17 @@ from itertools import pairwise
 
 from wsim.assets import get
 from wsim.errors import UserError
+from wsim.rules import flows, holds
 from wsim.rules.actions import MOVES, act, meet
-from wsim.rules.cast import CARRIERS, Cast, Pour, Thing
+from wsim.rules.cast import CARRIERS, Cast, Thing
+from wsim.rules.contents import check_amount, depth_of
 from wsim.rules.later import later
 from wsim.rules.lexicon import lexicon
+from wsim.rules.liquids import Filled
 from wsim.rules.partly import others
 from wsim.rules.phrases import Action, Clause, Phrase, Place
 from wsim.rules.places import CARRIED, UPRIGHT, common, do, put_inside, stand, support
+from wsim.rules.poured import pour
 from wsim.rules.reader import EACH_OTHER, Reader
 from wsim.rules.tokens import NotUnderstood
 from wsim.rules.used import check_used
@@ -27,6 +31,7 @@ def understand(clauses: list[Clause]) -> Cast:
         UserError: the prompt contradicts itself.
     """
     reader = Reader()
+    reader.alone = holds.stand_alone(clauses)
     for clause in [each for one in clauses for each in _of_the_last(one)]:
         _clause(reader, clause)
     _settle(reader)
@@ -48,14 +53,20 @@ def _of_the_last(clause: Clause) -> list[Clause]:
 def _clause(reader: Reader, clause: Clause) -> None:
     """Take in one clause."""
     _say_held(clause)
+    flows.comes_later(clause)
     did = {id(thing): [*thing.does] for thing in reader.cast.things}
     subjects: list[Thing] = []
     scenery = []
     pending: list[Thing] = []
     given: list[Thing] = []
     for phrase in clause.subjects:
+        if clause.given and not clause.actions and holds.poured_into(reader.last, phrase):
+            continue
         if reader.is_scenery(phrase):
-            reader.scenery(phrase)
+            if flows.is_source(phrase):
+                flows.named(reader, phrase)
+            else:
+                reader.scenery(phrase)
             scenery.append(phrase)
             continue
         found = reader.subjects(phrase, clause.actions)
@@ -259,7 +270,9 @@ def _say_held(clause: Clause) -> None:
     for phrase in [*clause.subjects, *(each for action in clause.actions for each in _places_of(action))]:
         for said in phrase.clauses:
             if said.verb == "hold" and said.target is not None and said.target.kind == "water":
-                phrase.filled, phrase.clauses = True, [one for one in phrase.clauses if one is not said]
+                held = said.target
+                phrase.filled = Filled(held.liquid, volume=held.volume, level=depth_of(held))
+                phrase.clauses = [one for one in phrase.clauses if one is not said]
 
 
 def _places_of(action: Action) -> list[Phrase]:
@@ -293,10 +306,14 @@ _ACTS = ("solid", "belt", "turntable", "pendulum", "seesaw", "robot", "vehicle")
 
 def _of_scenery(reader: Reader, clause: Clause, scenery: list[Phrase], subjects: list[Thing], action: Action) -> bool:
     """Whether an action is the tank's or the water's, and is done with."""
+    if not scenery and subjects and not flows.sourced(action) and holds.held(reader.cast, subjects, action):
+        return True
+    if flows.flows(reader, clause, scenery, subjects, action):
+        return True
     if action.verb == "pour":
         if subjects or any(phrase.kind != "water" for phrase in scenery):
             raise NotUnderstood([clause.words], "pours water, but not this")
-        _pour(reader, action)
+        pour(reader, action)
         return True
     if action.verb == "hold":
         held = action.target
@@ -313,32 +330,6 @@ def _of_scenery(reader: Reader, clause: Clause, scenery: list[Phrase], subjects:
     if scenery and not (standing and not subjects) and not (subjects and back):
         raise NotUnderstood([clause.words], "lets blocks and balls act, but not a tank, water or the ground")
     return False
-
-
-def _pour(reader: Reader, action: Action) -> None:
-    vessel, height, level = None, None, None
-    into = False
-    for place in action.places:
-        if place.preposition == "from" and place.length is not None:
-            height = place.length
-        elif place.preposition == "up to":
-            level = place.length
-        elif place.preposition == "time":
-            reader.cast.duration = place.value
-        elif place.preposition in ("into", "in", "inside", "onto") and place.phrase is not None:
-            into = True
-            if place.phrase.kind == "pronoun":
-                raise NotUnderstood([place.words], "needs to be told into what:")
-            vessel = None if reader.is_scenery(place.phrase) else reader.thing(place.phrase)
-            if vessel is None and place.phrase.kind != "tank":
-                raise NotUnderstood([action.words], "pours water into a tank, a bowl or a bucket, not there:")
-            if vessel is None:
-                reader.scenery(place.phrase)
-        else:
-            raise NotUnderstood([place.words], "cannot pour water there:")
-    if not into or (vessel is not None and (vessel.noun.family != "vessel" or vessel.count > 1)):
-        raise NotUnderstood([action.words], "pours water into a tank, a bowl or a bucket:")
-    reader.cast.pour = Pour(vessel, height, level)
 
 
 def _settle(reader: Reader) -> None:
@@ -360,7 +351,10 @@ def _settle(reader: Reader) -> None:
             where = "in the tank of water" if wet else "on the ground"
             reader.cast.assume(thing.words, where, "the prompt does not say where")
     _check_water(reader.cast)
-    if not reader.cast.things and not reader.cast.wet and reader.cast.pour is None:
+    check_amount(reader.cast)
+    for flow in reader.cast.flows:
+        flow.settle()
+    if not reader.cast.things and not reader.cast.wet and reader.cast.pour is None and not reader.cast.flows:
         raise NotUnderstood(["the prompt"], "found nothing to build in")
 
 

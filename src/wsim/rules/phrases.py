@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from wsim.rules.lexicon import Side
+from wsim.rules.liquids import Filled
 
 
 @dataclass
@@ -36,14 +37,17 @@ class Phrase:
     shape: tuple[str, float] | None = None  # the axis along which it is larger than usual, and how much: "tall"
     clauses: list[Action] = field(default_factory=list)  # "that sinks", "floating"
     only: bool = False  # "only the cork"
-    filled: bool = False  # a container that was said to hold water
+    filled: Filled | None = None  # a container that was said to hold a liquid
+    share: float | None = None  # of its height that a container is full; 0 is empty
+    liquid: str = "water"  # of one that is itself named: a liquid's key
+    volume: float | None = None  # the same: how much of it [m^3]
     at: int = -1  # where its words begin in the prompt as it is read
     places: list[Place] = field(default_factory=list)
 
     @property
     def adorned(self) -> bool:
         """Whether it is said of what it is made, how large, how many or where."""
-        own = (self.material, self.color, self.scale, self.length, self.measures, self.edges, self.filled)
+        own = (self.material, self.color, self.scale, self.length, self.measures, self.edges, self.filled, self.volume)
         return any(own) or self.plural or (self.count or 1) > 1 or bool(self.places)
 
 
@@ -59,6 +63,7 @@ class Place:
     value: float | None = None  # [m/s], [deg/s], [deg], [s] or [1]
     direction: str | None = None
     words: str = ""
+    full: Phrase | None = None  # what something is said to be filled with, and how much
 
 
 @dataclass

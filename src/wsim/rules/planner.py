@@ -24,6 +24,7 @@ from wsim.plan.views import cameras
 from wsim.rules.built import check_built
 from wsim.rules.cast import Cast
 from wsim.rules.grammar import parse
+from wsim.rules.holds import holding
 from wsim.rules.lexicon import lexicon
 from wsim.rules.meaning import understand
 from wsim.rules.scenes.bounce import contacts
@@ -31,6 +32,7 @@ from wsim.rules.scenes.carried import build_carried
 from wsim.rules.scenes.catalogue import as_they_are, themselves
 from wsim.rules.scenes.crossing import build_crossing
 from wsim.rules.scenes.drive import build_drive
+from wsim.rules.scenes.flowing import build_flowing
 from wsim.rules.scenes.ground import build_ground
 from wsim.rules.scenes.incline import build_inclines
 from wsim.rules.scenes.motion import ground_object
@@ -38,12 +40,15 @@ from wsim.rules.scenes.part import Part, tidy
 from wsim.rules.scenes.patrol import build_patrol
 from wsim.rules.scenes.pendulum import build_pendulums
 from wsim.rules.scenes.pour import build_pour
+from wsim.rules.scenes.rain import build_rain
 from wsim.rules.scenes.seesaw import build_seesaws
 from wsim.rules.scenes.tank import build_tank
 from wsim.rules.scenes.timed import hold
+from wsim.rules.scenes.vessel import LASTS, add_liquid, look_in
 from wsim.rules.steps import steps
 from wsim.rules.ties import tied_to
 from wsim.rules.tokens import NotUnderstood
+from wsim.rules.wet import check_wet
 
 __all__ = ["NotUnderstood", "plan"]
 
@@ -64,33 +69,39 @@ def plan(prompt: str) -> Plan:
     hold(cast, scene)
     scene.duration = max([scene.duration, *(hung.duration for hung in scene.hung)])
     scene.frame_rate = max([scene.frame_rate, *(hung.frame_rate for hung in scene.hung)])
+    vessel = holding(cast)
+    scene.duration = max(scene.duration, LASTS if vessel is not None else 0.0)
     duration = _duration(cast, scene)
     _note_what_is_common(cast, prompt, duration, scene)
+    joined = {name for joint in scene.joints for name in (joint.child, joint.parent) if name is not None}
+    objects = add_liquid(vessel, scene, themselves(scene.objects, scene.names, cast, joined), cast)
     common = {
         "title": " ".join(prompt.split()).rstrip("."),
         "prompt": prompt,
+        "openings": scene.openings,
         "simulation": SimulationPlan(
             duration=duration, spacing=scene.spacing, frame_rate=scene.frame_rate or FRAME_RATE
         ),
     }
-    joined = {name for joint in scene.joints for name in (joint.child, joint.parent) if name is not None}
-    placed = layout(Plan(objects=themselves(scene.objects, scene.names, cast, joined), **common))
+    placed = layout(Plan(objects=objects, **common))
     _hang(scene, placed, cast)
     ties = {"joints": scene.joints, "cords": scene.cords, "schedules": scene.schedules}
     whole = set_down(Plan(objects=[*placed.objects, *scene.posed], **ties, **common))
+    inside = [look_in(whole.object(scene.names[id(vessel)][-1]))] if vessel is not None else []
     made = tied(
         Plan.model_validate(
             {
                 **whole.model_dump(),
                 "contacts": [*scene.contacts, *contacts(cast, scene.names, whole)],
                 "objectives": as_they_are(scene.objectives, whole.objects),
-                "cameras": scene.cameras or cameras(whole, above=scene.surface, goes=scene.goes),
+                "cameras": scene.cameras or [*cameras(whole, above=scene.surface, goes=scene.goes), *inside],
                 "steps": steps(whole),
                 "assumptions": cast.assumptions,
             }
         )
     )
     check_built(made, cast, scene.names)
+    check_wet(made, cast)
     refuse_impossible(made, "the builtin planner's plan of this")
     return tied_to(made, cast, scene.names)
 
@@ -111,9 +122,11 @@ def _scene(cast: Cast) -> Part:
     for build in (build_inclines, build_carried, build_seesaws):
         for made in build(cast, taken):
             scene.add(made.shifted(_free(scene, made)))
-    for alone in (build_pour, build_patrol, build_drive):
+    for alone in (build_pour, build_flowing, build_rain, build_patrol, build_drive):
         scene.add(alone(cast, taken))
-    if any(thing.place == "ground" and id(thing) not in scene.names for thing in cast.things) and not cast.pour:
+    if any(thing.place == "ground" and id(thing) not in scene.names for thing in cast.things) and not (
+        cast.pour or cast.flows
+    ):
         scene.add(build_ground(cast, taken, scene))
     if any(item.primitive == "terrain" for item in scene.posed):
         scene.objects = scene.objects[1:]  # the level ground

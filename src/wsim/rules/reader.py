@@ -6,7 +6,8 @@ from copy import copy
 from dataclasses import replace
 
 from wsim.errors import UserError
-from wsim.rules.cast import Cast, Thing
+from wsim.rules import contents
+from wsim.rules.cast import Cast, Flow, Thing
 from wsim.rules.lexicon import lexicon
 from wsim.rules.phrases import Action, Phrase
 from wsim.rules.tokens import NotUnderstood
@@ -31,6 +32,8 @@ class Reader:
         self.singles: dict[int, list[Thing]] = {}  # what a thing that was several has become, by identity
         self.kept: list[Phrase] = []  # made on the way: their identity must stay theirs
         self.tanks: list[Phrase] = []
+        self.alone = False  # whether nothing is in what holds a liquid: then a bowl of water is that bowl, and no tank
+        self.flowing: dict[int, Flow] = {}  # the taps, rain and holes that phrases name, by identity
         self.struck: Thing | None = None  # the stack that was hit last
 
     # ---- the tank, the water, the ground
@@ -41,14 +44,19 @@ class Reader:
         if phrase.kind == "part":
             return self.part_of(phrase) is None
         noun = lexicon().nouns.get(phrase.kind)
-        return noun is not None and (noun.family == "tank" or (noun.family == "vessel" and phrase.filled))
+        if noun is None:
+            return False
+        held = noun.family == "vessel" and bool(phrase.filled) and not self.alone
+        return held or noun.family in ("tank", "tap", "rain", "drain")
 
     def scenery(self, phrase: Phrase) -> None:
         """Take in the tank, the water or the ground."""
         if phrase.kind == "ground":
             self._ground(phrase)
             return
-        _check_adjectives(phrase)
+        if phrase.kind in lexicon().nouns and lexicon().nouns[phrase.kind].family in ("tap", "rain", "drain"):
+            raise NotUnderstood([phrase.words], "lets fluid in or out by this, and puts nothing there:")
+        _check_adjectives(contents.bare(phrase))
         if phrase.kind not in ("water", "part"):
             again = phrase.definite or any(phrase is known for known in self.tanks)
             if self.cast.tank is not None and not again:
@@ -57,10 +65,9 @@ class Reader:
                 )
             self.tanks.append(phrase)
             self.cast.tank = self.cast.tank or phrase.words
-            if phrase.filled:
-                self.cast.water = self.cast.water or phrase.words
+            contents.full(self.cast, phrase)
         elif phrase.kind == "water":
-            self.cast.water = self.cast.water or phrase.words
+            contents.named(self.cast, phrase)
         for place in phrase.places:
             if place.phrase is not None and self.is_scenery(place.phrase) and place.phrase.kind != "part":
                 self.scenery(place.phrase)

@@ -226,7 +226,7 @@ def bodies(thing: Thing, cast: Cast, taken: set[str]) -> list[PlanObject]:
     """The thing's objects, without rows or motion."""
     noun = thing.noun
     material = material_of(thing, cast)
-    size = size_of(thing, material, 1000.0, cast)
+    size = size_of(thing, material, cast.liquid.material.density, cast)
     proxy = Proxy(primitive=noun.primitive, size=size)
     mass = _mass(thing, size)
     static = noun.family in ("furniture", "ramp", "vessel", "belt", "turntable")

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from lark import Token, Transformer, v_args
 
 from wsim.rules.lexicon import Named
+from wsim.rules.liquids import Filled
 from wsim.rules.phrases import Action, Phrase, Place
 from wsim.rules.tokens import Tokens
 
@@ -135,6 +137,37 @@ class Things(Transformer):
             raise self.tokens.fail(children[0].start_pos)
         return children[0], {"length" if what == "edge" else what: meant(measure)}
 
+    def amount(self, meta: Any, children: list[Any]) -> Phrase:
+        """ "2 litres of water", "10 cm of water"."""
+        measure, filled = children
+        if not str(filled).startswith("of "):
+            raise self.tokens.fail(filled.start_pos)
+        phrase = Phrase("water", self._words(meta), liquid=meant(filled).liquid, at=meta.start_pos)
+        if measure.type == "VOLUME":
+            phrase.volume = meant(measure)
+        elif measure.type in ("FLOW", "RAINFALL"):
+            phrase.measures[measure.type.lower()] = meant(measure)
+        else:
+            phrase.measures["z"] = meant(measure)
+        return phrase
+
+    def held(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
+        """ "Of red paint"."""
+        return children[0], {"filled": Filled(meant(children[2]), color=meant(children[1]))}
+
+    def rated(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
+        """ "Rain of 50 mm per hour"."""
+        return children[0], {children[1].type.lower(): meant(children[1])}
+
+    def filled_with(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
+        lead, *_, held = children
+        return lead, {"filled": Filled(held.liquid, volume=held.volume, level=held.measures.get("z"))}
+
+    def filled_to(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
+        """ "Filled with water up to 10 cm"."""
+        filled, _, level = children
+        return filled, {"filled": replace(meant(filled), level=meant(level))}
+
     def tilted(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
         return children[0], {"angle": meant(children[1])}
 
@@ -247,7 +280,7 @@ def span(meta: Any) -> tuple[int, int]:
 
 
 _HEADS = ("NOUN", "THINGS", "ONE", "FLUID", "GROUND", "PRONOUN")
-_MEASURES = ("x", "y", "z", "radius", "diameter", "mass", "density")
+_MEASURES = ("x", "y", "z", "radius", "diameter", "mass", "density", "flow", "rainfall")
 
 
 def phrase_of(head: Token) -> Phrase:
@@ -257,14 +290,19 @@ def phrase_of(head: Token) -> Phrase:
         return Phrase(meaning.noun, "", plural=meaning.plural, filled=meaning.filled)
     if head.type in ("THINGS", "ONE"):
         return Phrase("things" if head.type == "THINGS" else "one", "", plural=head.type == "THINGS")
-    kind = {"FLUID": "water", "GROUND": "ground", "PRONOUN": "pronoun"}[head.type]
+    if head.type == "FLUID":
+        return Phrase("water", "", liquid=meaning)
+    kind = {"GROUND": "ground", "PRONOUN": "pronoun"}[head.type]
     return Phrase(kind, "", part=str(head) if kind == "pronoun" else None)
 
 
 _FIELDS = {"COUNT": "count", "SCALE": "scale", "MATERIAL": "material", "COLOR": "color", "EDGES": "edges"}
-_FIELDS |= {"MASS": "mass", "ANGLE": "angle", "FILLED": "filled", "WEIGHT": "weight", "SHAPE": "shape", "NTH": "nth"}
+_FIELDS |= {"MASS": "mass", "ANGLE": "angle", "FULL": "share", "WEIGHT": "weight", "SHAPE": "shape", "NTH": "nth"}
 
 
 def changes_of(token: Token) -> dict[str, Any]:
     """What a token says of a thing, by the phrase\'s fields."""
-    return {_FIELDS[token.type]: True if token.type == "FILLED" else meant(token)}
+    meaning = meant(token)
+    if token.type == "FILLED":
+        return {"filled": meaning} | ({"share": meaning.share} if meaning.share is not None else {})
+    return {_FIELDS[token.type]: meaning}

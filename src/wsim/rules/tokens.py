@@ -67,7 +67,7 @@ class Tokens:
         tokens: list[Meant] = []
         at = 0
         while at < len(self.words):
-            found = self._edges(at) or self._measure(at) or self._often(at) or self._entry(at)
+            found = self._edges(at) or self._cups(at) or self._measure(at) or self._often(at) or self._entry(at)
             if found is None:
                 raise self.fail(self.spans[at][0])
             token, used = found
@@ -92,6 +92,8 @@ class Tokens:
                 tokens[-1].type, tokens[-1].meaning = "MANNER", "below"  # "falls into a bucket below."
             if token.type == "LENGTH" and (_drives(tokens) or _falls(tokens)):
                 token.type = "WAY"  # "drives 100 m": how far, not the size of what follows
+            if token.type in ("VERB", "COMMAND") and str(token) in _ALSO_NOUNS and last in ("ART", "THE", *_LOOKS):
+                token.type, token.meaning = "NOUN", Named(str(token), plural=False)
             tokens.append(token)
         return _commanded(tokens, self.known)
 
@@ -112,16 +114,45 @@ class Tokens:
             entry = self.known.entries.get(tuple(self.words[at : at + used]))
             if entry is None or (_named(entry.value) == "pontoon" and not {*_CROSSES} & {*self.words}):
                 continue
+            if entry.terminal == "FILLED_WITH" and not self._measured(at + used):
+                continue  # "filled with a hose"
+            if used > 1 and entry.value == "hit" and self._flows(at):
+                continue  # "runs into a box" hits it, water "runs into a tank"
             kind = "ING" if entry.terminal == "VERB" and self.words[at].endswith("ing") else entry.terminal
             return self._token(kind, entry.value, at, used)
         return None
 
+    def _cups(self, at: int) -> tuple[Meant, int] | None:
+        """ "Two cups of water", where it is poured or filled in: else a cup is a thing."""
+        number = (1.0, 1) if self.words[at] == "a" else self._number(at)
+        if number is None or not {*_POURED} & {*self.words}:
+            return None
+        past = at + number[1]
+        if self.words[past : past + 1] not in (["cup"], ["cups"]) or self.words[past + 1 : past + 2] != ["of"]:
+            return None
+        return self._token("VOLUME", number[0] * CUP, at, number[1] + 1)
+
+    def _measured(self, at: int) -> bool:
+        """Whether a measure of a liquid comes next, or its colour."""
+        if at >= len(self.words):
+            return False
+        if self.words[at] == "a" and self.words[at + 1 : at + 2] == ["quarter"]:
+            at += 1
+        return self.words[at] in self.known.colors or bool(self._cups(at) or self._measure(at))
+
+    def _flows(self, at: int) -> bool:
+        """Whether what comes before is a liquid, or what it comes from."""
+        entries = [self.known.entries.get((word,)) for word in self.words[max(0, at - 3) : at]]
+        return any(one is not None and (one.terminal == "FLUID" or _named(one.value) == "tap") for one in entries)
+
     def _measure(self, at: int) -> tuple[Meant, int] | None:
         """A number, with its unit if it has one."""
-        found = self._number(at)
+        found = self._number(at) if at < len(self.words) else None
         if found is None:
             return None
         value, digits = found
+        if at + digits >= len(self.words) and not self.words[at][0].isdigit():
+            return None
         for most in (4, 3, 2, 1):
             words = tuple(self.words[at + digits : at + digits + most])
             unit = self.known.units.get(words) if len(words) == most else None
@@ -139,7 +170,8 @@ class Tokens:
         if here[0][0].isdigit():
             return float(here[0]), 1
         if here[0] in ("half", "quarter"):
-            return 0.5 if here[0] == "half" else 0.25, 2 if here[1:2] in (["a"], ["an"]) else 1
+            past = 3 if here[1:3] == ["of", "a"] else 2 if here[1:2] in (["a"], ["an"]) else 1
+            return 0.5 if here[0] == "half" else 0.25, past
         entry = self.known.entries.get((here[0],))
         if entry is None or entry.terminal != "COUNT":
             return (1.0, 1) if here[0] in ("a", "an") and _long_unit(self.known, here[1:2]) else None
@@ -165,6 +197,9 @@ class Tokens:
 
 
 _LOOKS = ("SCALE", "COLOR", "MATERIAL", "WEIGHT", "SHAPE")
+_POURED = ("pour", "pours", "poured", "pouring", "filled", "fills", "fill")
+CUP = 0.0002365882365  # of the United States [m^3]
+_ALSO_NOUNS = ("drain",)  # verbs' forms that are things after an article
 _DONE = ("stacked", "piled", "submerged")  # what is said before a thing: "two stacked crates"
 _STRUCK = ("hit", "knock", "topple", "push")  # verbs of what one does with something
 _BELOW = ("below", "underneath", "beneath")
@@ -174,6 +209,7 @@ _SHORT = (
     (r"\b(they|we|you)'re\b", r"\1 are"),
     (r"\bi'd\b", "i would"),
     (r"\blet's\b", "let"),
+    (r"\bit (?:is raining|rains)\b", "rain falls"),
     (r"\b(is|are|was|were|does|do|did)n't\b", r"\1 not"),
 )
 
@@ -210,6 +246,10 @@ def _commanded(tokens: list[Meant], known: Lexicon) -> list[Meant]:
         elif starts and words in known.commands and after not in ("OF", "BREAK", "JOIN"):
             token.type, token.meaning, commands = "COMMAND", known.commands[words], True
             verb = token.meaning
+        elif token.type == "WITH" and verb == "fill" and commands:
+            token.type = "USING"  # "fill a tank with a hose"
+        elif token.type == "WITH" and before == "VERB" and tokens[at - 1].meaning == "fill":
+            token.type = "BY"  # "a tank is filled with a hose"
         elif token.type == "WITH" and commands and verb in _STRUCK and after != "FORCE":
             token.type = "USING"  # "knock a tower over with a ball"
         elif token.type in ("VERB", "ING", "BE", "COMMAND"):
@@ -229,7 +269,7 @@ def _named(value: Any) -> str:
 
 def _long_unit(known: Lexicon, words: list[str]) -> bool:
     """Whether "a" may count a unit: "a metre" does, "a second ball" does not."""
-    return known.units.get(tuple(words), ("",))[0] in ("LENGTH", "MASS") and len(words[0]) > 2
+    return known.units.get(tuple(words), ("",))[0] in ("LENGTH", "MASS", "VOLUME") and len(words[0]) > 2
 
 
 def _falls(tokens: Sequence[Token]) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from wsim.rules.cast import CARRIERS, Beside, Thing
+from wsim.rules.holds import fillable
 from wsim.rules.places import CARRIED
 from wsim.rules.tokens import NotUnderstood
 
@@ -87,7 +88,7 @@ def _adjectives(thing: Thing) -> tuple[tuple[bool, str], ...]:
     strange = bool(set(phrase.measures) - {"x", "z", "mass", "radius", "diameter"})
     return (
         (phrase.angle is not None and family not in ("ramp", "pendulum"), "inclines a ramp, but not this"),
-        (phrase.filled, "fills a tank, a bucket or a bowl with water, but not this"),
+        (phrase.share == 0.0 and not fillable(thing.noun), "has empty tanks and vessels, but not this"),
         (thing.speed is not None and not moving and not carries, "needs to be told how this moves"),
         (
             thing.force is not None and bool(thing.round or thing.target or thing.path or thing.off or thing.speed),

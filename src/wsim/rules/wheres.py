@@ -36,7 +36,7 @@ class Wheres(Things):
         return Place("from", length=meant(children[1]), words=self._words(meta))
 
     def at_speed(self, meta: Any, children: list[Any]) -> Place:
-        kind = "spin" if children[1].type == "SPIN" else "speed"
+        kind = {"SPIN": "spin", "FLOW": "flow", "RAINFALL": "rainfall"}.get(children[1].type, "speed")
         return Place(kind, value=meant(children[1]), words=self._words(meta))
 
     def after(self, meta: Any, children: list[Any]) -> Place:
@@ -51,6 +51,9 @@ class Wheres(Things):
 
     def for_time(self, meta: Any, children: list[Any]) -> Place:
         return Place("time", value=meant(children[1]), words=self._words(meta))
+
+    def in_time(self, meta: Any, children: list[Any]) -> Place:
+        return Place("in time", value=meant(children[1]), words=self._words(meta))
 
     def toward(self, meta: Any, children: list[Any]) -> Place:
         return Place("toward", direction=meant(children[0]), words=self._words(meta))

@@ -20,6 +20,7 @@ from wsim.limits import (
     MAX_COUNT,
     MAX_DENSITY,
     MAX_DURATION,
+    MAX_FLOW_INDEX,
     MAX_FRAME_RATE,
     MAX_MASS,
     MAX_POINTS,
@@ -28,6 +29,8 @@ from wsim.limits import (
     MAX_SIZE,
     MAX_SPEED,
     MAX_TIME_STEP,
+    MAX_YIELD_STRESS,
+    MIN_FLOW_INDEX,
     MIN_TIME_STEP,
 )
 from wsim.scene import schema
@@ -45,6 +48,7 @@ from wsim.scene.check_targets import check_targets
 from wsim.scene.errors import one_line
 from wsim.scene.skeleton import is_free
 from wsim.scene.usd_cameras import camera_problems
+from wsim.scene.usd_fluids import fluid_problems
 from wsim.scene.usd_openings import opening_problems
 from wsim.scene.usd_policies import policy_problems
 from wsim.scene.usd_reaches import reach_problems
@@ -154,7 +158,8 @@ def _stage_problems(stage: Usd.Stage, known: bool) -> Iterator[str]:
         yield from reach_problems(ours)
         yield from schedule_problems(ours)
         yield from sensor_problems(ours)
-        yield from opening_problems(ours)
+        yield from fluid_problems(ours)
+        yield from opening_problems(ours, prims)
         yield from camera_problems(prims)
         if any(schema.has(prim, schema.CONTACT) for prim in ours):
             yield from contact_problems(prims)
@@ -343,6 +348,8 @@ def _fluid(prim: Usd.Prim) -> Iterator[str]:
     problems = [
         *_bounded(prim.GetAttribute("wsim:density"), MAX_DENSITY, "kg/m^3"),
         *_bounded(prim.GetAttribute("wsim:viscosity"), 1e6, "Pa s", zero=True),
+        *_bounded(prim.GetAttribute("wsim:yieldStress"), MAX_YIELD_STRESS, "Pa", zero=True),
+        *_bounded(prim.GetAttribute("wsim:flowIndex"), MAX_FLOW_INDEX, "", low=MIN_FLOW_INDEX),
         *_bounded(prim.GetAttribute("wsim:size"), MAX_SIZE, "m", zero=True),
         *_bounded(prim.GetAttribute("wsim:spacing"), MAX_SIZE, "m"),
         *_bounded(prim.GetAttribute("wsim:speedOfSound"), 1e4, "m/s", zero=True),

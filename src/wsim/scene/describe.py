@@ -220,6 +220,8 @@ def _fluid(prim: Usd.Prim) -> Fluid:
         prim=str(prim.GetPath()),
         density=value_of(prim, "density", FLUID_DENSITY),
         viscosity=value_of(prim, "viscosity", FLUID_VISCOSITY),
+        yield_stress=value_of(prim, "yieldStress", 0.0),
+        flow_index=value_of(prim, "flowIndex", 1.0),
         spacing=value_of(prim, "spacing", 0.0),
         size=to_vec3(value_of(prim, "size", Gf.Vec3f(0.0))),
         center=to_vec3(rigid_frame(prim).ExtractTranslation()),

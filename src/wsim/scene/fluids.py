@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from pxr import Gf, Sdf, UsdGeom
 
-from wsim.limits import MAX_SIZE, MIN_SIZE
+from wsim.limits import LEAST_ACROSS, MAX_FLOW_INDEX, MAX_SIZE, MAX_YIELD_STRESS, MIN_FLOW_INDEX, MIN_SIZE
 from wsim.scene import schema
 from wsim.scene.authoring import Handle, note_line, set_extent, set_pose
 from wsim.scene.materials import Look, Material, bind
@@ -27,6 +27,7 @@ class Fluid(Handle):
     size: Vec3
     center: Vec3
     spacing: float
+    container: str | None = None
 
     @property
     def surface(self) -> float:
@@ -55,11 +56,13 @@ class Fluids(Tanks):
         velocity: Sequence[float] = (0.0, 0.0, 0.0),
         density: float = 1000.0,
         viscosity: float = 0.001,
+        yield_stress: float = 0.0,
+        flow_index: float = 1.0,
         speed_of_sound: float = 0.0,
         color: Sequence[float] = _WATER,
         attenuation_length: float | None = None,
     ) -> Fluid:
-        """Fill a tank or another vessel, or stand a free box of fluid somewhere.
+        """Fill a tank or another vessel, or stand a free box of fluid somewhere; each call is a liquid of its own.
 
         Args:
             name: Name of the prim.
@@ -67,13 +70,17 @@ class Fluids(Tanks):
             fills: What to fill, with `level` or `volume`: a tank, or anything that is hollow as it stands: a mesh, an
                 asset such as a bowl, what several shapes make up. Tilted it holds less; closed all round it holds most.
             level: Depth above the lowest point of its hollow, a tank's inner floor [m]; 0 for what a `tap` is to pour.
+                What fills a tank after another fluid lies on it: oil on water.
             volume: Instead of `level`: of the fluid [m^3].
             size: Instead of `fills`: edges (x, y, z) of a box of fluid [m], with `position`.
             position: Centre of that box [m].
             container: The tank that box stands in; found by itself where the box lies inside one.
             velocity: That all of it starts with, in the world [m/s].
-            density: Rest density [kg/m^3].
-            viscosity: Dynamic viscosity [Pa s]; water 0.001, honey 10.
+            density: Rest density [kg/m^3]; fluids of several densities go side by side, as oil of 900 and water do.
+            viscosity: Dynamic viscosity [Pa s]; water 0.001, honey 10. Of what yields or thins the consistency k.
+            yield_stress: Shear stress below which it stands [Pa], tau = tau_y + k rate^n (Herschel & Bulkley): paint 5,
+                ketchup 15, mud 50, toothpaste 200.
+            flow_index: n of that law, 0.1 to 2: 1 as of water, honey and Bingham's liquids; below 1 shear thins it.
             speed_of_sound: Numerical, of weakly compressible SPH [m/s]; 0 lets the solver choose.
             color: Linear RGB.
             attenuation_length: How clear it is: the way through it after which 1/e of the light is left [m], and has
@@ -82,7 +89,7 @@ class Fluids(Tanks):
 
         Raises:
             SceneError: If the fluid does not fit what it fills, that has no hollow, it is thinner than one particle or
-                overlaps another fluid, or a number is out of range.
+                overlaps another fluid, a tank is less than four particles across, or a number is out of range.
         """
         call = Call("fluid", name)
         path = self._path(call)
@@ -108,11 +115,19 @@ class Fluids(Tanks):
         if edges[2] > 0.0:
             _check_thickness(call, edges, step, "level" if fills is not None else "size", "the fluid")
             call.particles(edges, step)
-        fluid = Fluid(name=name, path=path, kind="fluid", size=edges, center=center, spacing=step)
+        fluid = Fluid(name=name, path=path, kind="fluid", size=edges, center=center, spacing=step, container=holder)
         self._check_overlap(call, fluid)
         values = {
             "density": (Sdf.ValueTypeNames.Double, call.density(density)),
             "viscosity": (Sdf.ValueTypeNames.Double, call.within("viscosity", viscosity, 0.0, 1e6, "Pa s")),
+            "yieldStress": (
+                Sdf.ValueTypeNames.Double,
+                call.within("yield_stress", yield_stress, 0.0, MAX_YIELD_STRESS, "Pa"),
+            ),
+            "flowIndex": (
+                Sdf.ValueTypeNames.Double,
+                call.within("flow_index", flow_index, MIN_FLOW_INDEX, MAX_FLOW_INDEX, ""),
+            ),
             "spacing": (Sdf.ValueTypeNames.Double, step),
             "size": (Sdf.ValueTypeNames.Float3, Gf.Vec3f(*edges)),
             "velocity": (Sdf.ValueTypeNames.Float3, Gf.Vec3f(*call.velocity(velocity))),
@@ -166,12 +181,23 @@ class Fluids(Tanks):
         prim = self._find(call, "fills", fills)
         tank = self._tanks.get(str(prim.GetPath()))
         if tank is not None:
-            _check_thickness(call, tank.inner_size, spacing, "inner_size", f'tank "{tank.name}"')
-            return tank.path, *_filling(call, tank, level, volume), None
+            _check_coarse(call, tank, spacing)
+            return tank.path, *_filling(call, tank, self._topmost(tank), level, volume), None
         from wsim.scene.vessels import Vessel  # with pydantic, and few programs fill another vessel
 
         vessel = Vessel(call, prim, spacing)
         return vessel.path, *vessel.filled(vessel.level_of(level, volume), spacing)
+
+    def _topmost(self, tank: Tank) -> Fluid | None:
+        """The fluid that fills a tank from wall to wall and is highest in it."""
+        own = [
+            each
+            for each in self._fluids
+            if each.container == tank.path
+            and each.size[2] > 0.0
+            and all(edge > wide - _TOUCH for edge, wide in zip(each.size[:2], tank.inner_size, strict=False))
+        ]
+        return max(own, key=lambda each: each.surface, default=None)
 
     def _tank(self, call: Call, field: str, what: Handle | str) -> Tank:
         path = str(self._find(call, field, what).GetPath())
@@ -203,20 +229,29 @@ class Fluids(Tanks):
                 call.fail(f"the fluid overlaps {shown(other.name)}; move it or make one of them smaller")
 
 
-def _filling(call: Call, tank: Tank, level: float | None, volume: float | None) -> tuple[Vec3, Vec3]:
-    """Size and centre of the fluid in a tank [m]."""
+def _filling(
+    call: Call, tank: Tank, under: Fluid | None, level: float | None, volume: float | None
+) -> tuple[Vec3, Vec3]:
+    """Size and centre of the fluid in a tank [m], on what fills it so far."""
     x, y, high = tank.inner_size
+    bottom = 0.0 if under is None else under.surface - tank.floor
     if level is None:
         amount = call.positive("volume", volume, 1e9, "m^3")
-        depth, what = amount / (x * y), f"volume = {amount:g} m^3"
+        depth, what = bottom + amount / (x * y), f"volume = {amount:g} m^3"
     else:
         depth = call.number("level", level, "m")
         if depth != 0.0:
             depth = call.size("level", level)
         what = f"level = {depth:g} m"
+        if under is not None and depth < bottom + _TOUCH:
+            call.fail(
+                f"{what} is not above {shown(under.name)}, which fills tank {shown(tank.name)} to {bottom:g} m; what "
+                "fills a tank after it lies on it"
+            )
     if depth > high + _TOUCH:
         call.fail(f'{what} is above the rim of tank "{tank.name}": its hollow is {high:g} m high')
-    return (x, y, depth), (tank.inner_center[0], tank.inner_center[1], tank.floor + depth / 2)
+    middle = tank.floor + 0.5 * (bottom + depth)
+    return (x, y, depth - bottom), (tank.inner_center[0], tank.inner_center[1], middle)
 
 
 def _check_thickness(call: Call, size: Vec3, spacing: float, field: str, what: str) -> None:
@@ -225,6 +260,15 @@ def _check_thickness(call: Call, size: Vec3, spacing: float, field: str, what: s
         call.fail(
             f"spacing = {spacing:g} m is wider than {what}: its {field}, least edge {thinnest:g} m, must hold at "
             f"least one particle; take spacing <= {thinnest / 4:.3g}"
+        )
+
+
+def _check_coarse(call: Call, tank: Tank, spacing: float) -> None:
+    least = min(tank.inner_size)
+    if least < LEAST_ACROSS * spacing * (1.0 - 1e-9):
+        call.fail(
+            f'spacing = {spacing:g} m is too coarse for tank "{tank.name}": its inner_size, least edge {least:g} m, '
+            f"must hold {LEAST_ACROSS} particles; take spacing <= {least / LEAST_ACROSS:.3g}, or a larger tank"
         )
 
 

@@ -44,7 +44,8 @@ class Openings(Author):
             name: Of the tap.
             fluid: What it pours; the world's only one.
             rate: How much [m^3/s]; 0.001 is a litre a second.
-            position: Centre of the mouth [m], out of what is solid; water must be free to leave it.
+            position: Centre of the mouth [m], out of what is solid or in its surface; water must be free to leave it.
+                It may be under water.
             direction: Which way the fluid goes there.
             radius: Of a round mouth [m].
             size: Instead of `radius`: width and height of a rectangular one [m], the height upright; across Z, along X
@@ -55,7 +56,7 @@ class Openings(Author):
 
         Raises:
             SceneError: If there is no such fluid or another one beside it, the mouth is narrower than two particles of
-                a stream, or a number is out of range.
+                a stream or inside of what is solid, or a number is out of range.
         """
         call = Call("tap", name)
         path = self._path(call)
@@ -79,7 +80,18 @@ class Openings(Author):
         }
         if stop is not None:
             values["stop"] = (_NAMES.Double, shuts)
-        return self._open(path, "tap", schema.TAP, mouth | values, position, water)
+        tap = self._open(path, "tap", schema.TAP, mouth | values, position, water)
+        self._check_free(call, tap, spacing)
+        return tap
+
+    def _check_free(self, call: Call, tap: Handle, spacing: float) -> None:
+        """Refuse a tap that lies in a solid which is there already; the others a stage's check finds."""
+        from wsim.scene.mouths import blocked_by, told  # with pydantic, and few programs have a tap
+
+        prim = self._stage.GetPrimAtPath(tap.path)
+        blocked = blocked_by(prim, spacing, self._stage.Traverse(Usd.TraverseInstanceProxies()))
+        if blocked:
+            call.fail(f"position = {told(prim, *blocked)}")
 
     def drain(
         self,

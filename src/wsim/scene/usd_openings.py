@@ -10,10 +10,11 @@ from pxr import Gf, Usd
 
 from wsim.limits import MAX_DURATION, MAX_SIZE, MAX_SPEED
 from wsim.scene import schema
+from wsim.scene.mouths import blocked_by, told
 from wsim.scene.openings import MAX_FLOW
 from wsim.scene.usd_prims import rigid_frame
 from wsim.scene.usd_shapes import to_vec3
-from wsim.scene.usd_values import line_of, targets_of, value_of
+from wsim.scene.usd_values import duration_of, line_of, targets_of, value_of
 from wsim.scene.world_openings import Drain, Tap
 
 _DOWN = Gf.Vec3d(0.0, 0.0, -1.0)
@@ -51,8 +52,13 @@ def _mouth(prim: Usd.Prim) -> dict[str, Any]:
     }
 
 
-def opening_problems(prims: Iterable[Usd.Prim]) -> Iterator[str]:
-    """Problems of the taps and drains among a stage's prims: of those that are read."""
+def opening_problems(prims: Iterable[Usd.Prim], solids: Iterable[Usd.Prim]) -> Iterator[str]:
+    """Problems of the taps and drains among a stage's prims: of those that are read.
+
+    Args:
+        prims: With wsim's schemas.
+        solids: What a tap may lie in.
+    """
     prims = list(prims)
     fluids = [prim for prim in prims if schema.has(prim, schema.FLUID)]
     poured = set()
@@ -67,9 +73,12 @@ def opening_problems(prims: Iterable[Usd.Prim]) -> Iterator[str]:
             poured.add(fluid[0].GetPath())
             if len(fluids) > 1:
                 yield f"{path}: a tap is for a world with one fluid; this one has {len(fluids)}"
-        yield from _mouth_problems(prim)
+        wrong = list(_mouth_problems(prim))
         if taps:
-            yield from _tap_problems(prim)
+            wrong += _tap_problems(prim)
+        if taps and not wrong and len(fluid) == 1:
+            wrong += _pour_problems(prim, fluid[0], solids)
+        yield from wrong
     for prim in fluids:
         size = value_of(prim, "size", None)
         if size is not None and math.prod(size) == 0.0 and prim.GetPath() not in poured:
@@ -101,3 +110,20 @@ def _tap_problems(prim: Usd.Prim) -> Iterator[str]:
     start, stop = value_of(prim, "start", 0.0), value_of(prim, "stop", None)
     if stop is not None and not start < stop <= MAX_DURATION:
         yield f"{path}.wsim:stop: {stop:g} must be after wsim:start, {start:g}, and <= {MAX_DURATION:g} s"
+
+
+def _pour_problems(prim: Usd.Prim, fluid: Usd.Prim, solids: Iterable[Usd.Prim]) -> Iterator[str]:
+    """Of a tap that is sound by itself: that it pours nothing, where it is and as long as the run is."""
+    spacing = float(value_of(fluid, "spacing", 0.0))
+    blocked = blocked_by(prim, spacing, solids)
+    if blocked:
+        yield f"{prim.GetPath()}: its position {told(prim, *blocked)}"
+    (tap,), duration = read_taps([prim]), duration_of(prim.GetStage())
+    poured, first = tap.poured(duration), tap.first(spacing)
+    if 0.0 < poured < first:
+        open_for = poured / tap.rate
+        yield (
+            f"{prim.GetPath()}.wsim:rate: {tap.rate:g} m^3/s for {open_for:.3g} s of the run's {duration:g} s is "
+            f"{poured:.3g} m^3, and its first particles come with {first:.3g} m^3, half a layer over its mouth; take "
+            f"a rate > {first / open_for:.3g} m^3/s, a longer run (scene.simulation), or a smaller mouth or spacing"
+        )

@@ -121,12 +121,14 @@ class Fluid(_Model):
 
     prim: str
     density: float  # [kg/m^3]
-    viscosity: float  # dynamic [Pa s]
+    viscosity: float  # dynamic [Pa s]; of what yields or thins the consistency [Pa s^n]
     spacing: float  # particle spacing [m]
     size: Vec3  # [m]
     center: Vec3  # [m], world
     velocity: Vec3 = (0.0, 0.0, 0.0)  # [m/s], world
     speed_of_sound: float = 0.0  # [m/s]; 0 lets the solver choose
+    yield_stress: float = 0.0  # [Pa]
+    flow_index: float = 1.0  # n of the law of Herschel and Bulkley
     container: str | None = None  # prim of the container it fills, or of the vessel
     volume: float | None = None  # [m^3], of what fills the hollow of a vessel up to the top of its box; else the box's
     color: Vec3 = (0.15, 0.4, 0.6)
@@ -134,6 +136,11 @@ class Fluid(_Model):
         None  # [m], after which 1/e of the light is left; None: clear, as the box is large
     )
     line: str | None = None
+
+    @property
+    def newtonian(self) -> bool:
+        """Whether it is as viscous however fast it is sheared."""
+        return self.yield_stress == 0.0 and self.flow_index == 1.0
 
     @property
     def amount(self) -> float:

@@ -6,6 +6,8 @@ import math
 
 from pydantic import BaseModel, ConfigDict
 
+from wsim.geometry.filled import lattice_axis
+
 Vec3 = tuple[float, float, float]
 
 
@@ -45,6 +47,15 @@ class Tap(Opening):
         """Volume that has come out by a time [m^3]."""
         until = time if self.stop is None else min(time, self.stop)
         return self.rate * max(until - self.start, 0.0)
+
+    def first(self, spacing: float) -> float:
+        """Volume after which its first particles are out [m^3]: half a layer over the mouth, or half a drop."""
+        if self.drop_speed:
+            return 0.5 * spacing**3
+        if self.radius:
+            return 0.5 * max(1, round(self.area / spacing**2)) * spacing**3
+        wide, high = (lattice_axis(length, spacing)[0] for length in self.size)
+        return 0.5 * wide * high * spacing**3
 
 
 class Drain(Opening):

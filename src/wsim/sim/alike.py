@@ -55,7 +55,7 @@ FREE: dict[type[BaseModel], frozenset[str]] = {
     Guide: frozenset({"position", "axis", "side"}),
     Spring: frozenset({"stiffness", "damping", "rest_length"}),
     Rope: frozenset({"length"}),
-    Fluid: frozenset({"density", "viscosity", "size", "center", "velocity", "volume"}),
+    Fluid: frozenset({"density", "viscosity", "yield_stress", "flow_index", "size", "center", "velocity", "volume"}),
 }
 # Bounds that the solver has a row for: all worlds state one or none does.
 STATED: dict[type[BaseModel], frozenset[str]] = {

@@ -65,6 +65,7 @@ class Style:
     checker_contrast: float = 0.13  # of the ground's pattern; 0 is plain
     reflection: float = 1.0  # 0 is none, 1 is Fresnel's
     scatter: float = 1.0  # 0: water and glass only absorb
+    refraction: bool = True  # by Snell's law, where a ray comes into a fluid
     shadows: bool = True
     smooth_edges: bool = True
     edges: float = 0.55  # share of the light that is taken where a thing ends; 0 draws no edges
@@ -131,7 +132,7 @@ class CameraRenderer:
         self._place(state)
         view = self._view(render_views.resized(camera, width, None))
         self._follow([view], state)
-        self._look_at_opaque(view, state)
+        self._look_at_opaque(view, state, view.rays)
         shape = view.opaque_shape.numpy()[0]
         return np.where(shape < int(composite.NO_SHAPE), shape, 0).astype(np.int32) - (shape >= int(composite.NO_SHAPE))
 
@@ -179,6 +180,7 @@ class CameraRenderer:
         model = self.model
         self._cords = CordShapes(model, self.world)
         self._edges = self.style.edges if looks is None else 0.0  # a sensor sees none
+        self._bends = self.style.refraction and looks is None  # and what it tells of lies where it is
         if looks is None:
             looks = render_materials.shape_looks(model, self.world, self._world_index)
             render_materials.paint(model, [looks])
@@ -225,6 +227,9 @@ class CameraRenderer:
             rays=SensorCamera.compute_camera_rays_pinhole(w, h, camera_fov=fov, device=device),
             pose=wp.array([render_views.camera_pose(camera)], dtype=wp.transformf, device=device),
             look=self._look(camera),
+            passing=wp.zeros((h, w), dtype=composite.Light, device=device),
+            bent_rays=wp.zeros((h, w, 1, 2), dtype=wp.vec3f, device=device),
+            row_goes_on=wp.zeros(h, dtype=wp.int32, device=device),
             light=wp.zeros((1, h, w), dtype=wp.vec3f, device=device),
             opaque_depth=wp.zeros((1, h, w), dtype=wp.float32, device=device),
             opaque_shape=wp.zeros((1, h, w), dtype=wp.uint32, device=device),
@@ -266,11 +271,11 @@ class CameraRenderer:
         look.pixel_angle = render_views.vertical_fov(camera) / camera.height
         return look
 
-    def _look_at_opaque(self, view: _View, state: Any) -> None:
+    def _look_at_opaque(self, view: _View, state: Any, rays: wp.array) -> None:
         self._sensor.update(
             state,
             view.pose,
-            view.rays,
+            rays,
             hdr_color_image=view.light,
             depth_image=view.opaque_depth,
             shape_index_image=view.opaque_shape,
@@ -279,8 +284,10 @@ class CameraRenderer:
         )
 
     def _draw(self, view: _View, state: Any) -> CameraImage:
-        self._look_at_opaque(view, state)
-        self._composite(view)
+        self._look_at_opaque(view, state, view.rays)
+        if self._composite(view, first=True, bends=self._bends and self._fluid_mesh.id != 0):
+            self._look_at_opaque(view, state, view.bent_rays)
+            self._composite(view, first=False, bends=False)
         wp.launch(
             display.encode, dim=view.color.shape, inputs=[view.color], outputs=[view.encoded], device=self._device
         )
@@ -298,7 +305,9 @@ class CameraRenderer:
             rgb=view.rgb.numpy().copy(), shape_index=view.shape.numpy().copy(), depth=view.depth.numpy().copy()
         )
 
-    def _composite(self, view: _View) -> None:
+    def _composite(self, view: _View, first: bool, bends: bool) -> bool:
+        """Take the rays to where they are bent, or to their ends; whether any goes on."""
+        view.row_goes_on.zero_()
         launch_shared(
             composite.composite,
             dim=view.color.shape,
@@ -311,10 +320,15 @@ class CameraRenderer:
                 self._shape_is_ground,
                 self._media(),
                 view.look,
+                first,
+                bends,
+                view.passing,
+                view.bent_rays,
             ],
-            outputs=[view.color, view.depth, view.shape],
+            outputs=[view.row_goes_on, view.color, view.depth, view.shape],
             device=self._device,
         )
+        return bends and bool(view.row_goes_on.numpy().any())
 
     def _media(self) -> Any:
         mesh, glass = self._fluid_mesh, self._glass
@@ -348,6 +362,9 @@ class _View:
     rays: wp.array
     pose: wp.array
     look: Any
+    passing: wp.array  # what has come along each ray so far
+    bent_rays: wp.array
+    row_goes_on: wp.array
     light: wp.array
     opaque_depth: wp.array
     opaque_shape: wp.array

@@ -16,11 +16,12 @@ from wsim.geometry.rotations import conjugate, rotate
 from wsim.geometry.shapes import into, kind_of
 from wsim.scene.world import Fluid, Shape, World
 from wsim.sim.falls import over_all, poured
-from wsim.sim.openings import fastest_poured, waiting
+from wsim.sim.openings import fastest_poured, taps_of, waiting
 from wsim.sim.vessels import carried_speed, places_in
 from wsim.solvers.inside import depth_in, is_open, solid_of
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.sph_config import ConfigSPH
+from wsim.solvers.sph_mouths import in_pipe
 
 SOUND_OVER_SPEED = 10.0  # keeps the density within 1 % (Monaghan 1994)
 
@@ -31,7 +32,7 @@ Depth = Callable[[Array], Array]
 @dataclass(frozen=True)
 class Seeded:
     """The particles of one fluid, n of them: positions [m] and velocities [m/s] (n, 3), masses [kg], pressures [Pa] and
-    `ParticleFlags`.
+    `ParticleFlags`; and what all of them are of, by the solver's names.
 
     Those that wait for taps follow the others; they are not `ParticleFlags.ACTIVE`.
     """
@@ -42,6 +43,7 @@ class Seeded:
     mass: Array
     pressure: Array
     flags: Array
+    liquid: dict[str, float]
 
 
 def containers_of(world: World, k: int = -1) -> list[OpenBox]:
@@ -53,21 +55,32 @@ def containers_of(world: World, k: int = -1) -> list[OpenBox]:
     ]
 
 
-def common_fluid(world: World) -> Fluid:
-    """The fluid whose density, viscosity and spacing all fluids of the world share.
+def heaviest(world: World) -> Fluid:
+    """The densest fluid, the first of them: it lies where water seeps to, and a world with one liquid is all of it.
 
     Raises:
-        UserError: If two fluids differ: the solver has one rest density, viscosity and spacing.
+        UserError: If two fluids have different spacings: the solver has one.
     """
     first = world.fluids[0]
     for other in world.fluids[1:]:
-        for name in ("density", "viscosity", "spacing"):
-            if not math.isclose(getattr(first, name), getattr(other, name)):
-                raise UserError(
-                    f"{other.prim}: {name} = {getattr(other, name)} differs from the {getattr(first, name)} of "
-                    f"{first.prim}; all fluids of a world must share it"
-                )
-    return first
+        if not math.isclose(first.spacing, other.spacing):
+            raise UserError(
+                f"{other.prim}: spacing = {other.spacing} differs from the {first.spacing} of {first.prim}; all fluids "
+                "of a world must share it"
+            )
+    return max(world.fluids, key=lambda fluid: fluid.density)
+
+
+def several_liquids(worlds: Sequence[World]) -> bool:
+    """Whether two fluids of a world differ, or one yields, so that each particle needs its own numbers."""
+    if not all(fluid.newtonian for world in worlds for fluid in world.fluids):
+        return True
+    return any(
+        not math.isclose(getattr(world.fluids[0], name), getattr(other, name))
+        for world in worlds
+        for other in world.fluids[1:]
+        for name in ("density", "viscosity")
+    )
 
 
 def sph_config(worlds: Sequence[World]) -> ConfigSPH | None:
@@ -78,10 +91,10 @@ def sph_config(worlds: Sequence[World]) -> ConfigSPH | None:
     """
     if not worlds[0].fluids:
         return None
-    fluids = [common_fluid(world) for world in worlds]
+    fluids = [heaviest(world) for world in worlds]
     sound = [
-        fluid.speed_of_sound or SOUND_OVER_SPEED * expected_speed(world)
-        for fluid, world in zip(fluids, worlds, strict=True)
+        max(fluid.speed_of_sound for fluid in world.fluids) or SOUND_OVER_SPEED * expected_speed(world)
+        for world in worlds
     ]
     return ConfigSPH(
         spacing=fluids[0].spacing,
@@ -94,14 +107,23 @@ def sph_config(worlds: Sequence[World]) -> ConfigSPH | None:
 
 def of_worlds(worlds: Sequence[World]) -> dict[str, list[float]]:
     """What the solver has of each world by itself, as `SolverSPH.register_custom_attributes` names it."""
-    fluids = [common_fluid(world) for world in worlds]
+    fluids = [heaviest(world) for world in worlds]
     return {"rest_density": [fluid.density for fluid in fluids], "viscosity": [fluid.viscosity for fluid in fluids]}
 
 
 def largest_step(world: World, config: ConfigSPH) -> float:
-    """The longest step that a world's fluid can take under common settings [s]."""
-    fluid = common_fluid(world)
-    return replace(config, rest_density=fluid.density, viscosity=fluid.viscosity).max_time_step
+    """The longest step that a world's fluids can take under common settings [s]."""
+    return min(
+        replace(config, rest_density=fluid.density, viscosity=fluid.viscosity).max_time_step
+        if fluid.newtonian
+        else config.yielding_time_step(_at_rest(fluid, config) / fluid.density)
+        for fluid in world.fluids
+    )
+
+
+def _at_rest(fluid: Fluid, config: ConfigSPH) -> float:
+    """Viscosity of what yields where it does not flow [Pa s]."""
+    return float(config.largest_viscosity_of(np.array([fluid.density]), np.array([fluid.viscosity]))[0])
 
 
 def expected_speed(world: World) -> float:
@@ -160,7 +182,7 @@ def seed(fluid: Fluid, world: World, config: ConfigSPH, meshes: dict[str, list[D
     """Particles of a fluid: of its box, and those that wait for its taps.
 
     The mass of each is the fluid's density times its cell, so that the fluid's mass is right whatever the spacing.
-    The pressure is hydrostatic.
+    The pressure is hydrostatic, under what stands on it too.
 
     Args:
         fluid: The box, or what fills a vessel; a box of no height holds nothing yet.
@@ -171,9 +193,10 @@ def seed(fluid: Fluid, world: World, config: ConfigSPH, meshes: dict[str, list[D
     Raises:
         UserError: If there is no room for it.
     """
-    position = _standing(fluid, world, meshes) if fluid.size[2] > 0.0 else np.zeros((0, 3))
+    position = _standing(fluid, world, config, meshes) if fluid.size[2] > 0.0 else np.zeros((0, 3))
     depth = 0.5 * fluid.size[2] + fluid.center[2] - position[:, 2]
-    pressure = fluid.density * abs(world.gravity[2]) * np.maximum(depth, 0.0)
+    over = sum(_over(fluid, other, position) for other in world.fluids if other is not fluid)
+    pressure = abs(world.gravity[2]) * (fluid.density * np.maximum(depth, 0.0) + over)
     there, count = len(position), waiting(fluid, world, config, fluid.cell)
     return Seeded(
         prim=fluid.prim,
@@ -182,23 +205,37 @@ def seed(fluid: Fluid, world: World, config: ConfigSPH, meshes: dict[str, list[D
         mass=np.full(there + count, fluid.density * fluid.cell),
         pressure=np.append(pressure, np.zeros(count)),
         flags=np.repeat(np.array([int(ParticleFlags.ACTIVE), 0], dtype=np.int32), [there, count]),
+        liquid={
+            "liquid_density": fluid.density,
+            "liquid_viscosity": fluid.viscosity,
+            "yield_stress": fluid.yield_stress,
+            "flow_index": fluid.flow_index,
+        },
     )
 
 
-def _standing(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Array:
-    """Where particles of a fluid are: not where a solid already is, (n, 3) [m]."""
+def _over(fluid: Fluid, other: Fluid, position: Array) -> Array:
+    """Mass over each place of a fluid of another that stands on it in the same container, per area (n,) [kg/m^2]."""
+    if other.container != fluid.container or other.center[2] < fluid.center[2]:
+        return np.zeros(len(position))
+    off = np.abs(position[:, :2] - np.array(other.center[:2])) <= 0.5 * np.array(other.size[:2])
+    return np.where(off.all(axis=1), other.density * other.size[2], 0.0)
+
+
+def _standing(fluid: Fluid, world: World, config: ConfigSPH, meshes: dict[str, list[Depth]]) -> Array:
+    """Where particles of a fluid are: not where a solid or the pipe of a tap already is, (n, 3) [m]."""
     position = places_in(fluid, world) if fluid.volume is not None else _in_box(fluid, world)
     free = np.ones(len(position), dtype=bool)
-    margin, around = 0.4 * fluid.spacing, {container.prim for container in world.containers}
-    if fluid.volume is not None:
-        around.add(str(fluid.container))
+    margin = 0.4 * fluid.spacing
     for body in world.bodies:
-        if body.prim not in around:
+        if body.prim != fluid.container:
             local = rotate(conjugate(np.array(body.rotation)), position - np.array(body.position))
             free &= ~_inside(body.shapes, local, margin, meshes.get(body.prim, []))
     for static in world.statics:
-        if static.prim not in around:  # whose fluid is cut to its walls
+        if static.prim != fluid.container:  # to whose walls the fluid is cut
             free &= ~_inside(static.shapes, position, margin, meshes.get(static.prim, []))
+    for tap in taps_of(world):
+        free &= ~in_pipe(tap, config, fluid.cell, position, margin)
     if not free.any():
         raise UserError(f"{fluid.prim}: bodies leave no room for fluid of spacing {fluid.spacing} m in {fluid.size} m")
     return position[free]
@@ -211,12 +248,17 @@ def _in_box(fluid: Fluid, world: World) -> Array:
     return rotate(np.array(rotation), cells.position) + np.array(fluid.center)
 
 
-def add_seeded(builder: Any, worlds: Sequence[World], config: ConfigSPH) -> tuple[list[dict[str, slice]], Array]:
-    """Fill the worlds of a builder that has no particles with fluid, as arrays.
+@dataclass(frozen=True)
+class Filled:
+    """What `add_seeded` has put in: of each world the range of each fluid's particles there, by prim; and numbers of
+    all particles (n,), by the solver's names."""
 
-    Returns:
-        The range of each fluid's particles in its own world, by prim; and the pressures of all particles [Pa], (n,).
-    """
+    ranges: list[dict[str, slice]]
+    numbers: dict[str, Array]
+
+
+def add_seeded(builder: Any, worlds: Sequence[World], config: ConfigSPH) -> Filled:
+    """Fill the worlds of a builder that has no particles with fluid, as arrays."""
     parts, ranges = [], []
     for world in worlds:
         seeded = [seed(fluid, world, config, {}) for fluid in world.fluids]
@@ -228,17 +270,25 @@ def add_seeded(builder: Any, worlds: Sequence[World], config: ConfigSPH) -> tupl
     builder.particle_qd = np.concatenate([part.velocity for part in parts]).astype(np.float32)
     builder.particle_mass = np.concatenate([part.mass for part in parts]).astype(np.float32)
     radii = [0.5 * fluid.spacing for world in worlds for fluid in world.fluids]
-    builder.particle_radius = np.repeat(np.array(radii, dtype=np.float32), [len(part.mass) for part in parts])
+    lengths = [len(part.mass) for part in parts]
+    builder.particle_radius = np.repeat(np.array(radii, dtype=np.float32), lengths)
     builder.particle_flags = np.concatenate([part.flags for part in parts])
     builder.particle_world = np.repeat(np.arange(len(worlds), dtype=np.int32), counts)
-    return ranges, np.concatenate([part.pressure for part in parts]).astype(np.float32)
+    numbers = {"pressure": np.concatenate([part.pressure for part in parts]).astype(np.float32)}
+    if several_liquids(worlds):
+        for name in parts[0].liquid:
+            own = np.array([part.liquid[name] for part in parts], dtype=np.float32)
+            numbers[name] = np.repeat(own, lengths)
+    return Filled(ranges, numbers)
 
 
 def _inside(shapes: list[Shape], points: Array, margin: float, meshes: list[Depth]) -> Array:
     """Which points lie in an object's shapes, or within `margin` [m] of them, all in its frame."""
     inside = np.zeros(len(points), dtype=bool)
     for shape in shapes:
-        if shape.collides and shape.kind not in ("mesh", "plane"):
+        if shape.collides and shape.kind == "plane":
+            inside |= kind_of(shape).depth(into(shape, points)) > -margin
+        elif shape.collides and shape.kind != "mesh":
             inside |= np.maximum.reduce(kind_of(shape).beyond(into(shape, points))) < margin
     for depth in meshes:
         inside |= depth(points) > -margin

@@ -39,6 +39,7 @@ class Ledger:
     Args:
         model: The Newton model.
         observables: The solver's, with `qfrc_actuator` at the end of a step, where the model has drives.
+        first_order: Whether all steps are of first order.
 
     Attributes:
         control: What of the bodies' force a controller gives, where there is one.
@@ -46,9 +47,10 @@ class Ledger:
         last: What each degree of freedom's drive gave last, which the change in a step is from [N m or N].
     """
 
-    def __init__(self, model: Any, observables: Any | None) -> None:
+    def __init__(self, model: Any, observables: Any | None, first_order: bool = False) -> None:
         self.worlds = max(1, model.world_count)
         self.model, self.observables, self._packed = model, observables, Packed(model.device)
+        self._first_order = first_order
         self.control: Any | None = None
         self.scheduled: Any | None = None
         self.bodies, self.dofs = model.body_count, model.joint_dof_count
@@ -90,7 +92,17 @@ class Ledger:
         self._packed.launch(
             accumulate_drive,
             dim=self.dofs,
-            inputs=[effort, control.joint_f, self.model.joint_armature, self._rate, state.joint_qd, dt],
+            inputs=[
+                effort,
+                control.joint_f,
+                self.model.joint_armature,
+                self.model.joint_target_ke,
+                self.model.joint_effort_limit,
+                self._first_order and self.observables is not None,
+                self._rate,
+                state.joint_qd,
+                dt,
+            ],
             outputs=[self.last, self._drives, self._unsure],
             changing=(effort, control.joint_f, state.joint_qd, dt),
         )

@@ -96,20 +96,21 @@ def measure_fluids(
     """The particles of some worlds by fluid, and what they come to: energies [J], the largest speed [m/s], the error
     of the density over the one at rest; what came, is held and went, where there are taps or drains."""
     q, qd, p = (array.numpy() for array in (state.particle_q, state.particle_qd, state.sph.pressure))
-    at_rest, mass = solver.rest_density.numpy(), built.model.particle_mass.numpy()
+    mass = built.model.particle_mass.numpy()
     openings = solver.openings
     there = openings.free() if openings else np.ones(len(q), dtype=bool)
     passed = (openings.come(), openings.gone(), openings.take_impulse()) if openings else None
     found = []
     for w in worlds:
-        density = at_rest[w] + p / built.sph.speed_of_sound**2
+        at_rest = solver.at_rest(w)
+        density = at_rest + p / built.sph.speed_of_sound**2
         frames = {
             prim: FluidFrame(q[part].copy(), qd[part].copy(), density[part], there[part] if openings else None)
             for prim, part in built.fluids[w].items()
         }
         part = slice(min(s.start for s in built.fluids[w].values()), max(s.stop for s in built.fluids[w].values()))
         own = np.flatnonzero(there[part]) + part.start
-        error = np.abs(density[own] / at_rest[w] - 1.0)
+        error = np.abs(density[own] / (at_rest if at_rest.ndim == 0 else at_rest[own]) - 1.0)
         speed2 = np.einsum("ij,ij->i", qd[own].astype(np.float64), qd[own].astype(np.float64))
         scalars = {
             "fluid/density_error_mean": float(error.mean()) if len(own) else 0.0,

@@ -32,6 +32,7 @@ from wsim.sim.fluids import (
     mesh_depths,
     of_worlds,
     seed,
+    several_liquids,
     sph_config,
 )
 from wsim.sim.forward import forward_only
@@ -118,7 +119,7 @@ def build_model(stage: Path, world: World, device: Any, world_count: int = 1, ti
         UserError: If the stage holds what the solvers cannot simulate.
     """
     config = sph_config([world])
-    one = _import(stage, world, config)
+    one = _import(stage, world, config, several_liquids([world]))
     step = _time_step([one.world], config, time_step)
     builder = one.builder
     if world_count == 1:
@@ -156,7 +157,8 @@ def build_batch(
         ValueError: If worlds differ in more than numbers.
     """
     config = sph_config(worlds)
-    builder, pressures, singly = _builder(worlds[0]), None, ""
+    builder, singly, several = _builder(worlds[0]), "", several_liquids(worlds)
+    numbers: dict[str, np.ndarray] = {}
     with uncollected():
         try:
             ones = _stated(builder, stages, worlds, skeletons)
@@ -164,19 +166,21 @@ def build_batch(
             singly = str(error)
             told = f"reading {len(stages)} stages one by one, as {singly}"
             progress(told, 0, 1)
-            ones = list(_imports(stages, worlds, config, processes))
+            ones = list(_imports(stages, worlds, config, processes, several))
             add_worlds(builder, ones[0].builder, [one.builder for one in ones[1:]])
             progress(told, 1, 1)
         else:
             if config:
-                ranges, pressures = add_seeded(builder, worlds, config)
-                ones = [replace(one, fluids=own) for one, own in zip(ones, ranges, strict=True)]
+                filled = add_seeded(builder, worlds, config)
+                ones = [replace(one, fluids=own) for one, own in zip(ones, filled.ranges, strict=True)]
+                numbers = filled.numbers
+                SolverSPH.register_custom_attributes(builder, several)
         if config:
             for name, own in of_worlds(worlds).items():
                 builder.custom_attributes[f"sph:{name}"].values = dict(enumerate(own))
         built = _finalized(builder, ones, config, _time_step(worlds, config, time_step), device)
-    if pressures is not None:
-        built.model.sph.pressure.assign(pressures)
+    for name, each in numbers.items():
+        getattr(built.model.sph, name).assign(each)
     return replace(built, singly=singly)
 
 
@@ -217,11 +221,11 @@ def _stated(builder: Any, stages: Sequence[Path], worlds: Sequence[World], skele
     return [replace(first, builder=None, world=world) for world in worlds]
 
 
-def _import(stage: Path, world: World, config: Any | None) -> _One:
+def _import(stage: Path, world: World, config: Any | None, several: bool = False) -> _One:
     _weigh_spins([world])
     single = _builder(world)
     newton.solvers.SolverMuJoCo.register_custom_attributes(single)
-    SolverSPH.register_custom_attributes(single)
+    SolverSPH.register_custom_attributes(single, several)
     ignore = [f"{fluid.prim}/volume" for fluid in world.fluids]
     single.add_usd(importable(stage, world), ignore_paths=ignore, apply_up_axis_from_stage=True)
     complete_articulations(single)
@@ -229,7 +233,7 @@ def _import(stage: Path, world: World, config: Any | None) -> _One:
     aim_drives(single, world)
     stated = state_numbers(single, world)
     breakable = add_constraints(single, world)
-    fluids = _add_fluids(single, world, config) if config else {}
+    fluids = _add_fluids(single, world, config, several) if config else {}
     harden_contacts(single, ContactConfig())
     let_roll(single, world)
     spare_kinematic(single)
@@ -241,7 +245,9 @@ def _import(stage: Path, world: World, config: Any | None) -> _One:
     return _One(single, world, fluids, breakable, surfaces, take_cylinders(single), stated)
 
 
-def _imports(stages: Sequence[Path], worlds: Sequence[World], config: Any | None, processes: int) -> Iterator[_One]:
+def _imports(
+    stages: Sequence[Path], worlds: Sequence[World], config: Any | None, processes: int, several: bool
+) -> Iterator[_One]:
     """Each world by itself; of all but the first, forks read the numbers (`wsim.sim.numbers`).
 
     Meshes are read here: Newton may work on them on a device, which a fork does not have.
@@ -252,14 +258,14 @@ def _imports(stages: Sequence[Path], worlds: Sequence[World], config: Any | None
     same, rest = topology(worlds[0]), range(1, len(stages))
     solids = [*(body.shapes for body in worlds[0].bodies), *(static.shapes for static in worlds[0].statics)]
     meshes = any(shape.kind == "mesh" for shapes in solids for shape in shapes)
-    first = _import(stages[0], worlds[0], config)
+    first = _import(stages[0], worlds[0], config, several)
     yield first
     known = {} if meshes else texts(first.builder)
 
     def whole(k: int) -> _One:
         if topology(worlds[k]) != same:
             check_alike([stages[0], stages[k]], [worlds[0], worlds[k]])
-        return _import(stages[k], worlds[k], config)
+        return _import(stages[k], worlds[k], config, several)
 
     def numbers(k: int) -> dict[str, Any] | None:
         with contextlib.suppress(Exception):  # what cannot be read there is read here, which says why
@@ -349,18 +355,19 @@ def _of_each(ones: Sequence[_One], found: Callable[[World, int], list[Any]]) -> 
     return [each for k, one in enumerate(ones) for each in found(one.world, k)]
 
 
-def _add_fluids(builder: Any, world: World, config: Any) -> dict[str, slice]:
+def _add_fluids(builder: Any, world: World, config: Any, several: bool) -> dict[str, slice]:
     slices, meshes = {}, mesh_depths(builder, world)
     for fluid in world.fluids:
         seeded: Seeded = seed(fluid, world, config, meshes)
         first, count = builder.particle_count, len(seeded.position)
+        own = {f"sph:{name}": [number] * count for name, number in seeded.liquid.items()} if several else {}
         builder.add_particles(
             pos=seeded.position.tolist(),
             vel=seeded.velocity.tolist(),
             mass=seeded.mass.tolist(),
             radius=[0.5 * fluid.spacing] * count,
             flags=seeded.flags.tolist(),
-            custom_attributes={"sph:pressure": seeded.pressure.tolist()},
+            custom_attributes={"sph:pressure": seeded.pressure.tolist()} | own,
         )
         slices[fluid.prim] = slice(first, first + count)
     return slices

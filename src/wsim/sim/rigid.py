@@ -133,7 +133,7 @@ class RigidBodies:
         if world.schedules:
             self.schedules = Schedules(model, worlds, self.solver, [joint.prim for joint in self.breakable], dt)
         pushed = driven or controlled or bool(world.schedules) or model.particle_count > 0
-        self.ledger = Ledger(model, self.observables if driven else None) if pushed else None
+        self.ledger = Ledger(model, self.observables if driven else None, not smooth) if pushed else None
         if self.ledger and self.schedules and self.schedules.pushes:
             self.ledger.scheduled = self.schedules.given
         self._notes: StepNotes | None = None

@@ -202,7 +202,10 @@ class Simulation:
         built = self.built
         if not built.sph:
             return None
-        return SolverSPH(self.model, built.sph, built.containers, built.taps, built.drains, built.vessels)
+        try:
+            return SolverSPH(self.model, built.sph, built.containers, built.taps, built.drains, built.vessels)
+        except ValueError as error:  # what no check of a stage foresaw: the world's fault, and its one line says which
+            raise UserError(str(error)) from error
 
     def step(self) -> None:
         """Advance by one time step: the fluid pushes the bodies, then the bodies move."""

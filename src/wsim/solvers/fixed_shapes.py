@@ -13,6 +13,8 @@ from wsim.geometry.filled import Samples, capsule_layers, cylinder_layers, latti
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.solvers.inside import depth_in, solid_of
 from wsim.solvers.layers import mesh_layers, mesh_part
+from wsim.solvers.plane_sections import fill_outline, section_of, upright_box
+from wsim.solvers.sampling import layers_within
 from wsim.solvers.sph_config import ConfigSPH
 
 Array = np.ndarray
@@ -55,7 +57,7 @@ class FixedLattice:
         upper: Array,
         spacing: float,
         shell: float,
-        flat: bool,
+        flat: bool = False,
         bottomless: bool = False,
     ) -> None:
         self._under = np.array([0.0, 0.0, np.inf if bottomless else 0.0])
@@ -73,7 +75,7 @@ class FixedLattice:
                 self._first[k] = round((lower[k] - self._origin[k]) / spacing)
                 self._last[k] = round((upper[k] - self._origin[k]) / spacing)
             if flat and k == 1:
-                self._origin[k], self._edge[k] = (lower[k], length) if length < ENDLESS else (-0.5, 1.0)
+                self._origin[k], self._edge[k] = -0.5, 1.0
                 self._first[k], self._last[k] = 0, 1
         corners = rotate(self._turn, lower + CORNERS * (upper - lower)) + self._at
         self.low, self.high = corners.min(axis=0), corners.max(axis=0)
@@ -142,6 +144,20 @@ class FixedWhole:
         return self._depth(rotate(conjugate(self._turn), points - self._at))
 
 
+class FixedNothing:
+    """What the plane of a flow does not meet."""
+
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+
+    def near(self, low: Array, high: Array) -> Samples:
+        """No particles, wherever they are asked for."""
+        return EMPTY
+
+    def depth(self, points: Array) -> Array:
+        """All points (n, 3) are outside."""
+        return np.full(len(points), -np.inf)
+
+
 class FixedMesh:
     """A large mesh, such as terrain, filled part by part: each part for itself, so that the parts join."""
 
@@ -169,16 +185,16 @@ def fixed_shape(kind: int, pose: Array, scale: Array, source: Any, config: Confi
         source: The `newton.Mesh` of a mesh.
         config: For the spacing, the kernel's support, dimensions and periodic axes.
 
-    Raises:
-        ValueError: If a shape other than a box or a plane is met in a plane.
+    In a flow in a plane it is what the plane cuts out of the shape, and may be nothing.
     """
-    spacing, shell, flat = config.spacing, config.support, config.dimensions == 2
+    spacing = config.spacing
+    shell = layers_within(config.support, spacing) * spacing
     if kind == GeoType.PLANE:
         return _fixed_plane(pose, scale, config)
+    if config.dimensions == 2:
+        return _fixed_section(kind, pose, scale, source, spacing, shell)
     if kind == GeoType.BOX:
-        return FixedLattice(pose, -scale, scale, spacing, shell, flat)
-    if flat:
-        raise ValueError(f"SolverSPH: a {GeoType(kind).name} in a flow of 2 dimensions; only boxes stand in a plane")
+        return FixedLattice(pose, -scale, scale, spacing, shell)
     if kind in (GeoType.MESH, GeoType.CONVEX_MESH):
         vertices = np.asarray(source.vertices, dtype=float).reshape(-1, 3) * scale
         return _fixed_mesh(pose, vertices, source, kind == GeoType.CONVEX_MESH, spacing, shell)
@@ -188,13 +204,30 @@ def fixed_shape(kind: int, pose: Array, scale: Array, source: Any, config: Confi
 def _fixed_plane(pose: Array, scale: Array, config: ConfigSPH) -> FixedShape:
     """As many layers below it as a kernel reaches; along a periodic axis as long as the period."""
     half = np.where(scale[:2] > 0.0, 0.5 * scale[:2], ENDLESS)
-    layers = max(1, round(config.support / config.spacing - 0.5))
-    lower, upper = np.array([*-half, -layers * config.spacing]), np.array([*half, 0.0])
+    shell = layers_within(config.support, config.spacing) * config.spacing
+    lower, upper = np.array([*-half, -shell]), np.array([*half, 0.0])
     for axis, ends in enumerate(config.periodic[:2]):
         if ends is not None:
             lower[axis], upper[axis] = (end - pose[axis] for end in ends)
     flat, bottomless = config.dimensions == 2, bool((scale[:2] == 0.0).all())
-    return FixedLattice(pose, lower, upper, config.spacing, config.support, flat, bottomless)
+    return FixedLattice(pose, lower, upper, config.spacing, shell, flat, bottomless)
+
+
+def _fixed_section(
+    kind: int, pose: Array, scale: Array, source: Any, spacing: float, shell: float
+) -> FixedShape | None:
+    """What the plane y = 0 cuts out of a shape, on its lattice if it is an upright box, else in layers."""
+    box = upright_box(pose, scale) if kind == GeoType.BOX else None
+    if box is not None:
+        return FixedLattice(box[0], -box[1], box[1], spacing, shell, flat=True)
+    outline = section_of(kind, pose, scale, source)
+    if outline is None or len(outline.segments) == 0:
+        return None if outline is None else FixedNothing()
+    low, high = outline.bounds
+    own = outline.moved(-0.5 * (low + high))
+    middle = np.array([0.5 * (low[0] + high[0]), 0.0, 0.5 * (low[1] + high[1]), 0.0, 0.0, 0.0, 1.0])
+    half = 0.5 * np.array([high[0] - low[0], 1.0, high[1] - low[1]])
+    return FixedWhole(middle, lambda: fill_outline(own, spacing), lambda at: own.depth(at[:, [0, 2]]), half, shell)
 
 
 def _fixed_mesh(pose: Array, vertices: Array, source: Any, convex: bool, spacing: float, shell: float) -> FixedShape:

@@ -87,36 +87,37 @@ def spread_layers(
     sweeps: int = SWEEPS,
     fine: int = PIECES,
 ) -> Samples:
-    """Particles of the layers at a surface, spread along it.
+    """Particles of the layers at a surface, spread along it; in space, or in a plane.
 
     Args:
-        cells: Centres of the lattice cells that the layers cross [m], shape (n, 3).
+        cells: Centres of the lattice cells that the layers cross [m], shape (n, d).
         depth: Theirs below the surface [m], shape (n,).
-        edge: Of a cell [m], shape (3,).
+        edge: Of a cell [m], shape (d,).
         spacing: Thickness of a layer [m].
         depth_of: Depth of any points below the surface [m].
         sweeps: Rounds of spreading.
         fine: Pieces that a cell's edge is cut into.
     """
+    d = len(edge)
     ticks = [((np.arange(fine) + 0.5) / fine - 0.5) * length for length in edge]
-    corners = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
-    pieces = (cells[:, None, :] + corners).reshape(-1, 3)
+    corners = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, d)
+    pieces = (cells[:, None, :] + corners).reshape(-1, d)
     below = depth_of(pieces)
     keep = (below > 0.0) & (below < RELAXED * spacing)
-    # A fourth axis, along which layers are far apart: nothing is nearest to a particle of another layer.
+    # One more axis, along which layers are far apart: nothing is nearest to a particle of another layer.
     far = 1e3 * spacing
     pieces = np.column_stack([pieces, far * np.floor(below / spacing)])[keep]
     if len(pieces) == 0:
-        return Samples(np.zeros((0, 3)), np.zeros(0))
+        return Samples(np.zeros((0, d)), np.zeros(0))
     seeds = np.column_stack([cells, far * np.floor(depth / spacing)])[depth > 0.0]
     seeds = _cover(seeds, pieces, spacing)
     for _ in range(sweeps):
         nearest = cKDTree(seeds).query(pieces, workers=-1)[1]
         count = np.bincount(nearest, minlength=len(seeds))
-        sums = np.stack([np.bincount(nearest, pieces[:, axis], len(seeds)) for axis in range(4)], axis=1)
+        sums = np.stack([np.bincount(nearest, pieces[:, axis], len(seeds)) for axis in range(d + 1)], axis=1)
         seeds, count = sums[count > 0] / count[count > 0, None], count[count > 0]
-        seeds[:, :3] = _to_mid_depth(seeds[:, :3], spacing, depth_of)
-    return Samples(seeds[:, :3], count * np.prod(edge / fine))
+        seeds[:, :d] = _to_mid_depth(seeds[:, :d], spacing, depth_of)
+    return Samples(seeds[:, :d], count * np.prod(edge / fine))
 
 
 def _cover(seeds: Array, pieces: Array, spacing: float) -> Array:
@@ -124,7 +125,7 @@ def _cover(seeds: Array, pieces: Array, spacing: float) -> Array:
     away = cKDTree(seeds).query(pieces, workers=-1)[0] if len(seeds) else np.full(len(pieces), np.inf)
     bare = pieces[away > spacing]
     _, first = np.unique(np.floor(bare / spacing), axis=0, return_index=True)
-    return np.concatenate([seeds.reshape(-1, 4), bare[first]])
+    return np.concatenate([seeds.reshape(-1, pieces.shape[1]), bare[first]])
 
 
 def _to_mid_depth(points: Array, spacing: float, depth_of: Callable[[Array], Array]) -> Array:
@@ -135,7 +136,10 @@ def _to_mid_depth(points: Array, spacing: float, depth_of: Callable[[Array], Arr
     """
     depth, step = depth_of(points), 0.1 * spacing
     middle = (np.floor(depth / spacing) + 0.5) * spacing
-    slope = [(depth_of(points + step * axis) - depth_of(points - step * axis)) / (2.0 * step) for axis in np.eye(3)]
+    slope = [
+        (depth_of(points + step * axis) - depth_of(points - step * axis)) / (2.0 * step)
+        for axis in np.eye(points.shape[1])
+    ]
     moved = points + (middle - depth)[:, None] * np.stack(slope, axis=1)
     nearer = np.abs(depth_of(moved) - middle) < np.abs(depth - middle)
     return np.where(nearer[:, None], moved, points)

@@ -12,13 +12,16 @@ from newton import GeoType, ShapeFlags
 from scipy.spatial import cKDTree
 
 from wsim.geometry.filled import Samples, box_lattice, capsule_layers, cylinder_layers, sphere_layers
-from wsim.geometry.rotations import rotate
+from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.limits import LEAST_ACROSS
 from wsim.solvers.layers import mesh_layers
+from wsim.solvers.plane_sections import fill_section
 from wsim.solvers.sampling import container_walls
 from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.vessel_walls import VesselWalls
 
 Array = np.ndarray
+ROUNDED = 1e-6  # of a length: a model holds single precision
 
 
 @dataclass(frozen=True)
@@ -72,7 +75,7 @@ class Boundary:
         return most
 
 
-def sample_shape(kind: int, scale: Array, source: Any, spacing: float, plane: bool = False) -> Samples | None:
+def sample_shape(kind: int, scale: Array, source: Any, spacing: float) -> Samples | None:
     """Fill one Newton shape with particles in its own frame; None for kinds that have no inside.
 
     Args:
@@ -80,15 +83,9 @@ def sample_shape(kind: int, scale: Array, source: Any, spacing: float, plane: bo
         scale: Newton's shape scale: half extents of a box [m], radius and half height of a cylinder [m], …
         source: The `newton.Mesh` of a mesh.
         spacing: Particle spacing [m].
-        plane: One layer at y = 0, for a flow in the x-z plane.
-
-    Raises:
-        ValueError: If a shape other than a box is met in a plane.
     """
     if kind == GeoType.BOX:
-        return box_lattice(2.0 * scale, spacing, plane)
-    if plane:
-        raise ValueError(f"SolverSPH: a {GeoType(kind).name} in a flow of 2 dimensions; only boxes stand in a plane")
+        return box_lattice(2.0 * scale, spacing)
     if kind == GeoType.SPHERE:
         return sphere_layers(float(scale[0]), spacing)
     if kind == GeoType.CYLINDER:
@@ -105,6 +102,8 @@ def sample_shape(kind: int, scale: Array, source: Any, spacing: float, plane: bo
 def sample_bodies(model: Any, config: ConfigSPH, vessels: VesselWalls) -> Boundary:
     """Sample every colliding shape of a model's bodies, and the walls of those that are vessels.
 
+    In a plane it is what y = 0 cuts out of them as the model has them at its start.
+
     Args:
         model: The `newton.Model`.
         config: For the spacing and the dimensions.
@@ -119,15 +118,24 @@ def sample_bodies(model: Any, config: ConfigSPH, vessels: VesselWalls) -> Bounda
         body, label = int(bodies[shape]), model.shape_label[shape]
         if body < 0 or not flags[shape] & ShapeFlags.COLLIDE_SHAPES or vessels.made_of(label):
             continue
-        kind, source = int(kinds[shape]), model.shape_source[shape]
-        found = sample_shape(kind, scales[shape], source, config.spacing, config.dimensions == 2)
+        form = int(kinds[shape]), poses[shape].astype(float), scales[shape].astype(float), model.shape_source[shape]
+        found = _of_body(*form, starts[body], config)
         if found is None:
-            name = GeoType(kind).name
+            name = GeoType(form[0]).name
             warnings.warn(f"SolverSPH: the fluid does not see {label}, a {name}", stacklevel=3)
             continue
-        own = Samples(rotate(poses[shape][3:], found.position) + poses[shape][:3], found.volume)
-        moving[body].append(vessels.beside(own, int(worlds[body]), body, starts[body]))
+        moving[body].append(vessels.beside(found, int(worlds[body]), body, starts[body]))
     return _join(moving, worlds)
+
+
+def _of_body(kind: int, pose: Array, scale: Array, source: Any, body: Array, config: ConfigSPH) -> Samples | None:
+    """Particles of a body's shape, or in a plane of its section, in the body's frame; poses (7,) of both."""
+    if config.dimensions == 2:
+        stands = np.concatenate([rotate(body[3:], pose[:3]) + body[:3], multiply(body[3:], pose[3:])])
+        found = fill_section(kind, stands, scale, source, config.spacing)
+        return found and Samples(rotate(conjugate(body[3:]), found.position - body[:3]), found.volume)
+    found = sample_shape(kind, scale, source, config.spacing)
+    return found and Samples(rotate(pose[3:], found.position) + pose[:3], found.volume)
 
 
 def sample_container(box: OpenBox, config: ConfigSPH) -> tuple[Array, Array]:
@@ -135,11 +143,11 @@ def sample_container(box: OpenBox, config: ConfigSPH) -> tuple[Array, Array]:
     plane = config.dimensions == 2
     open_axes = np.array([ends is not None for ends in config.periodic]) | np.array([False, plane, False])
     narrowest = min(length for axis, length in enumerate(box.size) if not open_axes[axis])
-    if narrowest < 4.0 * config.spacing:
+    if narrowest < LEAST_ACROSS * config.spacing * (1.0 - ROUNDED):
         raise ValueError(
             f"SolverSPH: spacing = {config.spacing} m is too coarse for a container of inner size {box.size} m: its "
-            f"narrowest side holds {narrowest / config.spacing:.1f} particles and needs 4; "
-            f"use spacing <= {narrowest / 4.0:.4g}"
+            f"narrowest side holds {narrowest / config.spacing:.1f} particles and needs "
+            f"{LEAST_ACROSS}; use spacing <= {narrowest / LEAST_ACROSS:.4g}"
         )
     sides = np.array([[True, True], [True, True], [True, box.closed]]) & ~open_axes[:, None]
     samples = container_walls(np.array(box.size), config.spacing, config.support, sides, plane)

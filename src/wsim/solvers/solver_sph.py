@@ -21,6 +21,7 @@ from wsim.solvers.sph_domain import domain_of
 from wsim.solvers.sph_faces import FixedFaces
 from wsim.solvers.sph_faults import in_words, inspected
 from wsim.solvers.sph_led_faces import LedFaces
+from wsim.solvers.sph_liquids import Liquids, has_liquids, register_liquids
 from wsim.solvers.sph_mouths import Drain, Tap
 from wsim.solvers.sph_openings import ROOM, Openings
 from wsim.solvers.sph_particles import SortedParticles
@@ -61,20 +62,23 @@ class SolverSPH(SolverBase):
     Attributes:
         openings: The taps and drains; None without any.
         body_wrench: Of the fluid on each body in the last step: force [N], torque about its centre of mass [N m].
+        liquids: What each particle is of, where worlds have several liquids; else None.
 
     Raises:
-        ValueError: If the model has no particles, the settings are out of range, a container is too narrow, or too few
-            particles wait for the taps.
+        ValueError: If the model has no particles, the settings are out of range, a container is too narrow, too few
+            particles wait for the taps, or there are vessels in a plane.
     """
 
     Config = ConfigSPH
 
     @classmethod
-    def register_custom_attributes(cls, builder: newton.ModelBuilder) -> None:
+    def register_custom_attributes(cls, builder: newton.ModelBuilder, several_liquids: bool = False) -> None:
         """Register what the solver reads beside Newton's own particle arrays.
 
         `sph:pressure` [Pa] is a state variable of each particle, p = c^2 (rho - rho_0). `sph:rest_density` [kg/m^3]
-        and `sph:viscosity` [Pa s] belong to a world; 0 takes the `Config`'s.
+        and `sph:viscosity` [Pa s] belong to a world; 0 takes the `Config`'s. With `several_liquids` each particle has
+        `sph:liquid_density` and `sph:liquid_viscosity`, too; where its density is 0 it is of the world's. With
+        `sph:yield_stress` [Pa] or `sph:flow_index` it yields, and the viscosity is its consistency [Pa s^n].
         """
         frequency, assignment = newton.Model.AttributeFrequency, newton.Model.AttributeAssignment
         for name, of, where in (
@@ -87,6 +91,8 @@ class SolverSPH(SolverBase):
                     name=name, frequency=of, assignment=where, dtype=wp.float32, default=0.0, namespace="sph"
                 )
             )
+        if several_liquids:
+            register_liquids(builder)
 
     def __init__(
         self,
@@ -108,9 +114,12 @@ class SolverSPH(SolverBase):
         self.config = config
         self.fluid_count = model.particle_count
         self.world_count = max(1, model.world_count)
+        if vessels and config.dimensions == 2:
+            raise ValueError("SolverSPH: vessels in a flow of 2 dimensions; there a cup is shapes, or a tank")
         with wp.ScopedDevice(model.device):
             self._read_worlds()
-            world = np.maximum(model.particle_world.numpy(), 0)
+            world = self._fluid_world = np.maximum(model.particle_world.numpy(), 0)
+            self._read_liquids()
             self.openings = (
                 Openings(model, config, world, self.rest_density.numpy(), taps, drains) if taps or drains else None
             )
@@ -143,16 +152,25 @@ class SolverSPH(SolverBase):
                 values = np.where(given > 0.0, given, values)
             setattr(self, name, wp.array(values, dtype=float))
 
+    def _read_liquids(self) -> None:
+        """What each particle is of, where a world has several liquids."""
+        worlds = self.rest_density.numpy(), self.viscosity.numpy()
+        self.liquids = Liquids(self.model, self.config, self._fluid_world, *worlds) if has_liquids(self.model) else None
+
+    def at_rest(self, world: int) -> np.ndarray:
+        """Density at rest [kg/m^3]: a world's, (), or where it has several liquids that of each particle, (n,)."""
+        return self.liquids.density if self.liquids else np.asarray(self.rest_density.numpy()[world])
+
     def notify_model_changed(self, flags: newton.ModelFlags | int) -> None:
-        """Read the worlds' densities and viscosities again; gravity and masses are read in every step."""
+        """Read the liquids' densities and viscosities again; gravity and masses are read in every step."""
         if flags & newton.ModelFlags.MODEL_PROPERTIES:
             with wp.ScopedDevice(self.model.device):
                 self._read_worlds()
+                self._read_liquids()
 
     def _sample_solids(self, containers: tuple[OpenBox, ...], vessels: Sequence[Vessel], world: np.ndarray) -> None:
         """Fill the solids with particles: bodies, and what stands still where the fluid is or comes to."""
         model = self.model
-        self._fluid_world = world
         place, home = model.particle_q.numpy(), world
         if self.openings:
             place, home = self.openings.known(place, world)
@@ -164,7 +182,8 @@ class SolverSPH(SolverBase):
         self.domain = domain_of(place, containers, vessels)
         if self.openings:
             self.domain = self.domain[0], self.domain[1] + ROOM * self.config.support
-        self.faces = FixedFaces(model, self.world_count, containers, self.config.support, self.vessels.made_of)
+        plane = self.config.dimensions == 2
+        self.faces = FixedFaces(model, self.world_count, containers, self.config.support, self.vessels.made_of, plane)
         self.skins = Skins(model, self.world_count, self.config.spacing, vessels)
         self.led = LedFaces(model, self.world_count, self.config.support, self.vessels.made_of)
         self.blows = Blows(model, self.config.spacing, self.skins.moving or self.led.count > 0)
@@ -191,6 +210,8 @@ class SolverSPH(SolverBase):
             self.world_count,
             self.bodies.sampled.crowd((1.0 + self.config.skin) * self.config.support),
             self.openings.stage if self.openings else None,
+            self.liquids is not None,
+            self.liquids is not None and self.liquids.yields,
         )
         self.programs = self.search.programs
         still = wp.zeros(self.wall_count, dtype=wp.vec3)
@@ -231,6 +252,8 @@ class SolverSPH(SolverBase):
         self.push.forget()
         self.full.zero_()
         self.skins.forget()
+        if self.liquids:
+            self.liquids.forget()
 
     def restart(self) -> None:
         """Begin anew, with a state from before the first step: what waits for taps waits again."""
@@ -325,8 +348,13 @@ class SolverSPH(SolverBase):
             ],
             outputs=[fluid.point, fluid.motion, fluid.full],
         )
+        if self.liquids:
+            self.liquids.gather(fluid, self.model.particle_mass, self.config.speed_of_sound)
         self._gather_solid(self.search.bodies, self.bodies.position, self.bodies.velocity, self.bodies.volume)
         self.push.gather()
+        if self.liquids and self.liquids.yields:
+            wp.copy(fluid.creep, fluid.motion)
+            wp.copy(self.search.bodies.creep, self.search.bodies.motion)
 
     def _gather_solid(self, solid: SortedParticles, *arrays: wp.array) -> None:
         if solid.count:
@@ -349,12 +377,21 @@ class SolverSPH(SolverBase):
                 inputs=[*method, gravity, fluid, walls],
                 outputs=[search.walls.motion],
             )
+            if self.openings:
+                self.openings.press_walls(self.method, search.walls, dt)
         launch_shared(
             self.programs.continuity,
             dim=self.fluid_count,
             inputs=[*method, gravity, fluid, walls, bodies, dt],
             outputs=[self.pressure, self.full],
         )
+        if self.openings and self.openings.pipes:
+            launch_shared(
+                self.programs.fill,
+                dim=self.fluid_count,
+                inputs=[*method, gravity, fluid],
+                outputs=[self.pressure, self.full],
+            )
         wp.launch(
             density_kernels.set_pressure,
             dim=self.fluid_count,
@@ -366,7 +403,7 @@ class SolverSPH(SolverBase):
                 self.programs.extrapolate,
                 dim=solid.count,
                 inputs=[*method, self.viscosity, gravity, fluid, solid.species],
-                outputs=[solid.motion, solid.facing],
+                outputs=[solid.motion, solid.facing, solid.liquid],
             )
 
     def _move_fluid(self, state_in: newton.State, state_out: newton.State, dt: float) -> None:
@@ -374,6 +411,9 @@ class SolverSPH(SolverBase):
         search = self.search
         fluid, walls, bodies = (kind.species for kind in (search.fluid, search.walls, search.bodies))
         method = [search.grid, self.method, self.rest_density, self.viscosity]
+        if self.liquids and self.liquids.yields:
+            self.liquids.shear(search, self.method)
+            self.liquids.creep(search, self.method, self.model, dt)
         self.push.sum(self.method, self.rest_density, self.viscosity, self.model.gravity)
         launch_shared(
             self.programs.momentum,
@@ -381,17 +421,17 @@ class SolverSPH(SolverBase):
             inputs=[*method, self.model.gravity, fluid, walls, bodies, self.model.particle_mass, dt],
             outputs=[state_out.particle_q, state_out.particle_qd, self._on_walls],
         )
-        worlds, solid = search.fluid.world, self.config.dimensions == 3
+        worlds = search.fluid.world
         if self.openings:
             self.openings.take_in(worlds, state_out.particle_q)
-        if len(self._on_walls) and self.faces.count and solid:
+        if len(self._on_walls) and self.faces.count:
             self.faces.keep_out(worlds, dt, state_out.particle_q, state_out.particle_qd, self._on_walls)
-        if self.skins.count and solid:
+        if self.skins.count:
             self.skins.keep_out(search.fluid, dt, state_out, state_in, self._on_walls, self.blows)
-        if self.led.count and solid:
+        if self.led.count and self.config.dimensions == 3:
             self.led.keep_out(search.fluid, dt, state_out, state_in, self.blows)
         if self.openings:
-            self.openings.lead(search.fluid, state_out, self._on_walls, dt)
+            self.openings.lead(self.method, search.fluid, state_out, self._on_walls, dt)
         if len(self._on_walls):
             self._wall_impulse.add(self._on_walls, dt)
             if len(self.push.on_walls):

@@ -9,9 +9,11 @@ import numpy as np
 import warp as wp
 from newton import GeoType, ShapeFlags
 
+from wsim.geometry.outlines import Outline
 from wsim.geometry.rotations import rotate
 from wsim.kernels.sph.faces import Faces, keep_out
 from wsim.solvers.inside import solid_of
+from wsim.solvers.plane_sections import section_of
 from wsim.solvers.shapes import OpenBox
 
 Array = np.ndarray
@@ -32,6 +34,7 @@ class FixedFaces:
         containers: Tanks of all worlds.
         reach: How deep in a mesh a particle is still put back [m]; more than it goes in a step.
         spared: Whether the shape of a label has a skin instead (`wsim.solvers.sph_skins`).
+        plane: Whether the flow is in the x-z plane, where a shape is the prism over what the plane cuts out of it.
     """
 
     def __init__(
@@ -41,6 +44,7 @@ class FixedFaces:
         containers: Sequence[OpenBox],
         reach: float,
         spared: Callable[[Any], bool] = lambda _: False,
+        plane: bool = False,
     ) -> None:
         self._model, self._world_count = model, world_count
         kinds, scales = model.shape_type.numpy(), model.shape_scale.numpy().astype(float)
@@ -48,13 +52,17 @@ class FixedFaces:
         fixed = ((model.shape_flags.numpy() & ShapeFlags.COLLIDE_SHAPES) != 0) & (model.shape_body.numpy() < 0)
         fixed &= np.array([not spared(label) for label in model.shape_label], dtype=bool)
         self._faces: Any = Faces()
-        self._faces.reach = reach
+        self._faces.reach, self._faces.plane_flow = reach, plane
+        self._meshes: dict[tuple[Any, ...], wp.Mesh] = {}  # by what they are made of: worlds share them
+        solid = fixed & ~plane  # in a plane all shapes are prisms
         self.count = (
             self._take_planes(fixed & (kinds == GeoType.PLANE) & (scales[:, :2] == 0.0).all(axis=1), containers)
-            + self._take_boxes(self._homes(fixed & (kinds == GeoType.BOX)), scales)
-            + self._take_rounds(self._homes(fixed & np.isin(kinds, ROUNDS)), kinds, scales)
-            + self._take_meshes(self._homes(fixed & np.isin(kinds, MESHES)), kinds, scales)
+            + self._take_boxes(self._homes(solid & (kinds == GeoType.BOX)), scales)
+            + self._take_rounds(self._homes(solid & np.isin(kinds, ROUNDS)), kinds, scales)
+            + self._take_meshes(self._homes(solid & np.isin(kinds, MESHES)), kinds, scales)
         )
+        if plane:
+            self.count += self._take_sections(np.flatnonzero(fixed & (kinds != GeoType.PLANE)), kinds, scales)
 
     def _take_planes(self, endless: Array, containers: Sequence[OpenBox]) -> int:
         floors = np.full(self._world_count, np.inf)  # of the lowest hollow in each
@@ -87,7 +95,6 @@ class FixedFaces:
         return len(rounds)
 
     def _take_meshes(self, meshes: list[tuple[int, int]], kinds: Array, scales: Array) -> int:
-        self._meshes: dict[tuple[Any, ...], wp.Mesh] = {}  # by what they are made of: worlds share them
         ids, ends = [], []
         for _, k in meshes:
             source, convex = self._model.shape_source[k], kinds[k] == GeoType.CONVEX_MESH
@@ -103,6 +110,24 @@ class FixedFaces:
         self._faces.mesh_low = wp.array(np.array([low for low, _ in ends]).reshape(-1, 3), dtype=wp.vec3)
         self._faces.mesh_high = wp.array(np.array([high for _, high in ends]).reshape(-1, 3), dtype=wp.vec3)
         return len(meshes)
+
+    def _take_sections(self, which: Array, kinds: Array, scales: Array) -> int:
+        """Take what the plane cuts out of some shapes."""
+        prisms: dict[int, tuple[wp.Mesh, Array, Array]] = {}
+        for k in which.tolist():
+            outline = section_of(int(kinds[k]), self._poses[k], scales[k], self._model.shape_source[k])
+            if outline is not None and len(outline.segments):
+                prisms[k] = _prism(outline)
+        homes = self._homes(np.isin(np.arange(len(kinds)), list(prisms)))
+        each = [prisms[k] for _, k in homes]
+        self._prisms = prisms  # kept: the kernel has their ids alone
+        self._faces.mesh_first = self._first(homes)
+        upright = np.tile([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], (len(each), 1))
+        self._faces.mesh_pose = wp.array(upright, dtype=wp.transform)
+        self._faces.mesh = wp.array(np.array([mesh.id for mesh, _, _ in each], dtype=np.uint64), dtype=wp.uint64)
+        self._faces.mesh_low = wp.array(np.array([low for _, low, _ in each]).reshape(-1, 3), dtype=wp.vec3)
+        self._faces.mesh_high = wp.array(np.array([high for _, _, high in each]).reshape(-1, 3), dtype=wp.vec3)
+        return len(each)
 
     def _placed(self, k: int, points: Array) -> Array:
         """Points of a shape in the world."""
@@ -141,6 +166,23 @@ def closed_mesh(vertices: Array, triangles: Array, convex: bool) -> wp.Mesh:
     solid = solid_of(vertices, triangles, convex)
     corners = wp.array(np.asarray(solid.vertices), dtype=wp.vec3)
     return wp.Mesh(corners, wp.array(np.asarray(solid.faces).reshape(-1), dtype=int), support_winding_number=True)
+
+
+def _prism(outline: Outline) -> tuple[wp.Mesh, Array, Array]:
+    """The sides of the prism over an outline, and the corners of what is upright around it [m].
+
+    It has no ends: a flow is far from them.
+    """
+    (x0, z0), (x1, z1) = outline.bounds
+    far = max(x1 - x0, z1 - z0)
+    flat = outline.segments
+    ends = [np.insert(flat, 1, y, axis=2).reshape(-1, 3) for y in (-far, far)]  # of each segment its start, its end
+    start = 2 * np.arange(len(flat))
+    back = start + 2 * len(flat)
+    quads = [np.stack(corners, axis=1) for corners in ((start, back + 1, start + 1), (start, back, back + 1))]
+    corners, triangles = np.concatenate(ends), np.concatenate(quads)
+    mesh = wp.Mesh(wp.array(corners, dtype=wp.vec3), wp.array(triangles.reshape(-1), dtype=int))
+    return mesh, np.array([x0, -far, z0]), np.array([x1, far, z1])
 
 
 def round_size(kind: int, scale: Array) -> Array:

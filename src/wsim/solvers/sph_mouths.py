@@ -112,6 +112,25 @@ def layers_of(tap: Tap, config: ConfigSPH, volume: float) -> int:
     return 0 if tap.speed else math.ceil(config.support / layer_of(tap, config.spacing, volume))
 
 
+def depth_of(tap: Tap, config: ConfigSPH, volume: float) -> float:
+    """How long a tap's pipe is [m]; 0 where it has none."""
+    return layers_of(tap, config, volume) * layer_of(tap, config.spacing, volume)
+
+
+def in_pipe(tap: Tap, config: ConfigSPH, volume: float, position: Array, margin: float = 0.0) -> Array:
+    """Which positions (n, 3) [m] are in a tap's pipe, or within a margin [m] of it."""
+    depth, own = depth_of(tap, config, volume), local(tap, position)
+    along = (own[:, 2] > -depth - margin) & (own[:, 2] < margin)
+    return along & beside(tap, own, margin) if depth else np.zeros(len(position), dtype=bool)
+
+
+def beside(opening: Tap | Drain, own: Array, margin: float = 0.0) -> Array:
+    """Which positions (n, 3), in the frame of an opening, are before or behind it, or within a margin of that [m]."""
+    if opening.radius:
+        return np.asarray(np.hypot(own[:, 0], own[:, 1]) <= opening.radius + margin)
+    return np.asarray((np.abs(own[:, :2]) <= 0.5 * np.array(opening.size) + margin).all(axis=1))
+
+
 def poured_by(tap: Tap, time: float) -> float:
     """Volume that has come out of a tap by a time [m^3]."""
     spans = itertools.pairwise([0.0, *(min(key, time) for key in tap.times), time])

@@ -11,7 +11,7 @@ import warp as wp
 from wsim.kernels.schedules import Keys
 from wsim.kernels.sph import openings as kernels
 from wsim.solvers.sph_config import ConfigSPH
-from wsim.solvers.sph_mouths import Drain, Tap, layer_of, layers_of, places_of, pose_of
+from wsim.solvers.sph_mouths import Drain, Tap, depth_of, layer_of, places_of, pose_of
 
 Array = np.ndarray
 
@@ -28,8 +28,9 @@ def taps_of(own: Sequence[tuple[int, Tap]], config: ConfigSPH, volume: Array, ma
     found, spacing = kernels.Taps(), config.spacing
     taps, worlds = [tap for _, tap in own], [w for w, _ in own]
     layers = [layer_of(tap, spacing, volume[w]) for w, tap in own]
-    depths = [layers_of(tap, config, volume[w]) * layer for (w, tap), layer in zip(own, layers, strict=True)]
+    depths = [depth_of(tap, config, volume[w]) for w, tap in own]
     found.pose = wp.array(np.array([pose_of(tap) for tap in taps]).reshape(-1, 7), dtype=wp.transform)
+    found.half, found.round = _faces(taps)
     found.area = wp.array([tap.area for tap in taps], dtype=wp.float64)
     found.layer, found.depth = wp.array(layers, dtype=wp.float64), wp.array(depths, dtype=float)
     found.mass, found.speed = wp.array(mass[worlds], dtype=float), wp.array([tap.speed for tap in taps], dtype=float)
@@ -42,6 +43,8 @@ def taps_of(own: Sequence[tuple[int, Tap]], config: ConfigSPH, volume: Array, ma
     found.phase = wp.array(np.concatenate([np.zeros(0), *(phase for _, phase in places)]), dtype=wp.float64)
     homes = np.repeat(np.array(worlds, dtype=np.int32), counts)
     found.world, found.first = wp.array(homes, dtype=int), _first(homes, len(mass))
+    found.place_first = wp.array(np.append(0, np.cumsum(counts)), dtype=int)
+    found.tap_first = _first(np.array(worlds, dtype=np.int32), len(mass))
     return found
 
 
@@ -49,14 +52,19 @@ def drains_of(own: Sequence[tuple[int, Drain]], config: ConfigSPH, world_count: 
     """A `Drains`, of drains with their worlds, world by world."""
     found = kernels.Drains()
     drains = [drain for _, drain in own]
-    halves = [(drain.radius,) * 2 if drain.radius else (0.5 * drain.size[0], 0.5 * drain.size[1]) for drain in drains]
     found.pose = wp.array(np.array([pose_of(drain) for drain in drains]).reshape(-1, 7), dtype=wp.transform)
-    found.half = wp.array(np.array(halves).reshape(-1, 2), dtype=wp.vec2)
-    found.round = wp.array([int(drain.radius > 0.0) for drain in drains], dtype=int)
+    found.half, found.round = _faces(drains)
     found.depth = wp.array([drain.depth or config.support for drain in drains], dtype=float)
     found.falls = wp.array([int(drain.falls) for drain in drains], dtype=int)
     found.first = _first(np.array([w for w, _ in own], dtype=np.int32), world_count)
     return found
+
+
+def _faces(openings: Sequence[Tap | Drain]) -> tuple[wp.array, wp.array]:
+    """Half of each one's width and height [m], of a round one the radius, twice; and whether it is round."""
+    halves = [(each.radius,) * 2 if each.radius else (0.5 * each.size[0], 0.5 * each.size[1]) for each in openings]
+    half = wp.array(np.array(halves).reshape(-1, 2), dtype=wp.vec2)
+    return half, wp.array([int(each.radius > 0.0) for each in openings], dtype=int)
 
 
 def _first(homes: Array, world_count: int) -> wp.array:

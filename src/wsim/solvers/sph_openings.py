@@ -10,8 +10,9 @@ import warp as wp
 
 from wsim.kernels.sph import openings as kernels
 from wsim.kernels.sph.grid import PARKED
+from wsim.kernels.sph.pipes import keep_out_of_pipes, press_walls
 from wsim.solvers.sph_config import ConfigSPH
-from wsim.solvers.sph_mouths import Drain, Tap, layer_of, layers_of, local, placed, places_of
+from wsim.solvers.sph_mouths import Drain, Tap, beside, in_pipe, layer_of, layers_of, local, placed, places_of
 from wsim.solvers.sph_opening_arrays import drains_of, taps_of
 from wsim.solvers.sph_wall_impulse import WallImpulse
 
@@ -33,6 +34,7 @@ class Openings:
 
     Attributes:
         stage: Of each particle (`wsim.kernels.sph.openings`), (n,).
+        pipes: Whether any tap has one.
 
     Raises:
         ValueError: If the fluid is in a plane, or fewer particles wait than pipes hold.
@@ -58,6 +60,7 @@ class Openings:
         self._world_first = wp.array(first, dtype=int)
         self._mass = self._masses(world)
         self._volume = self._mass / rest_density
+        self.pipes = any(not tap.speed for _, tap in self._own_taps)
         self.taps = taps_of(self._own_taps, config, self._volume, self._mass)
         self.drains = drains_of(self._own_drains, config, self._world_count)
         self.tally: Any = kernels.Tally()
@@ -128,17 +131,14 @@ class Openings:
     def outside(self, walls: Array, world: Array) -> Array:
         """Which walls' particles, (n, 3) [m] of worlds (n,), are not where water comes or goes: in pipes and holes."""
         keep = np.ones(len(walls), dtype=bool)
-        deep = self._config.support + 2.0 * self._config.spacing
+        hole = self._config.support + 2.0 * self._config.spacing
         for w, opening in self._own:
-            if isinstance(opening, Tap) and opening.speed:
-                continue
-            own = local(opening, walls)
-            along = -own[:, 2] if isinstance(opening, Tap) else own[:, 2]
-            if opening.radius:
-                beside = np.hypot(own[:, 0], own[:, 1]) <= opening.radius
+            if isinstance(opening, Tap):
+                inside = in_pipe(opening, self._config, self._volume[w], walls)
             else:
-                beside = (np.abs(own[:, :2]) <= 0.5 * np.array(opening.size)).all(axis=1)
-            keep &= ~(beside & (along > 0.0) & (along < deep) & (world == w))
+                own = local(opening, walls)
+                inside = beside(opening, own) & (own[:, 2] > 0.0) & (own[:, 2] < hole)
+            keep &= ~(inside & (world == w))
         return keep
 
     def park_below(self, low: Array) -> None:
@@ -190,10 +190,21 @@ class Openings:
                 outputs=[self.stage, self.tally],
             )
 
-    def lead(self, fluid: Any, state: Any, on_walls: wp.array, dt: float) -> None:
-        """Move what is in pipes, and pour what is due.
+    def press_walls(self, method: Any, walls: Any, dt: float) -> None:
+        """Count layers that begin in pipes into what sorted walls give back; arguments as of `lead`."""
+        if self.pipes and walls.count:
+            wp.launch(
+                press_walls,
+                dim=walls.count,
+                inputs=[method, self.taps, self._travel, dt, walls.species],
+                outputs=[walls.motion],
+            )
+
+    def lead(self, method: Any, fluid: Any, state: Any, on_walls: wp.array, dt: float) -> None:
+        """Move what is in pipes, keep other water out of them, and pour what is due.
 
         Args:
+            method: `wsim.kernels.sph.density.Method`.
             fluid: The sorted particles, as they were when the step began.
             state: Gets positions, velocities and pressures at its end.
             on_walls: Forces on walls by particle [N]; water in pipes gives none.
@@ -216,6 +227,13 @@ class Openings:
             ],
             outputs=[self.stage, model.particle_flags, self.tally, *moved, on_walls, self._given],
         )  # fmt: skip
+        if self.pipes:
+            wp.launch(
+                keep_out_of_pipes,
+                dim=fluid.count,
+                inputs=[fluid.world, model.particle_mass, self.stage, method, self.taps, self._travel, dt],
+                outputs=[*moved, self._given],
+            )
         if self._own_taps:
             self._pour(fluid, moved, dt)
         self._impulse.add(self._given, dt)

@@ -22,6 +22,8 @@ class SortedParticles:
         capacity: Neighbours that a list has room for; 0 where cells are walked.
         kind: `FLUID`, `WALLS` or `BODIES`.
         stage: Of each, where some may be parked (`wsim.kernels.sph.openings`).
+        several: Whether each particle of fluid has its own liquid.
+        yields: Whether any of these yields.
 
     Attributes:
         count: Number of particles n.
@@ -29,6 +31,7 @@ class SortedParticles:
         order: Original index of each sorted one, shape (n,).
         point: Position [m] and volume [m^3] of each sorted one, shape (n,).
         motion: Velocity [m/s] and pressure [Pa] of each sorted one, shape (n,).
+        liquid: Rest density [kg/m^3] and viscosity [Pa s] of each, of solids what is near; empty with one liquid.
         facing: Of solids, as `across` and `handed` of bodies: see `Species`.
         species: What kernels take.
     """
@@ -41,6 +44,8 @@ class SortedParticles:
         capacity: int,
         kind: int,
         stage: wp.array | None = None,
+        several: bool = False,
+        yields: bool = False,
     ) -> None:
         n = self.count = len(world)
         cells = cells_of(grid) * world_count if n else 0
@@ -62,6 +67,9 @@ class SortedParticles:
         self.species: Any = Species()
         self.species.order, self.species.world = self.order, self.world
         self.species.point, self.species.motion = self.point, self.motion
+        self.species.liquid = self.liquid = wp.zeros(n if several else 0, dtype=wp.vec2)
+        self.species.creep = self.creep = wp.zeros(n if yields else 0, dtype=wp.vec4)
+        self.species.stage = self.stage
         self.species.full = self.full = wp.zeros(n if kind == FLUID else 0, dtype=float)
         self.species.facing = self.facing = wp.zeros(0 if kind == FLUID else n, dtype=wp.vec4)
         self.species.across = self.across = wp.zeros(n if kind == BODIES else 0, dtype=wp.vec4)

@@ -36,6 +36,8 @@ class ParticleSearch:
         world_count: Number of worlds.
         crowd: Most particles of its own body that any has within reach.
         stage: Of each fluid particle, where some may be parked.
+        several: Whether each of them has its own liquid.
+        yields: Whether any of these yields.
 
     Attributes:
         fluid, walls, bodies: The particles of each kind.
@@ -53,6 +55,8 @@ class ParticleSearch:
         world_count: int,
         crowd: int,
         stage: wp.array | None = None,
+        several: bool = False,
+        yields: bool = False,
     ) -> None:
         self.cuda = wall_position.device.is_cuda
         self.skin = 0.0 if self.cuda else config.skin * config.support
@@ -60,7 +64,7 @@ class ParticleSearch:
         self.grid = make_grid(config, *domain, config.support + self.skin, self.cuda, world_count)
         capacity = 0 if self.cuda else _capacity(config, self.grid.support)
         self.fluid, self.walls, self.bodies = (
-            SortedParticles(world, self.grid, world_count, capacity and capacity + more, kind, own)
+            SortedParticles(world, self.grid, world_count, capacity and capacity + more, kind, own, several, yields)
             for world, more, kind, own in (
                 (fluid_world, 0, FLUID, stage),
                 (wall_world, 0, WALLS, None),
@@ -75,6 +79,8 @@ class ParticleSearch:
             branch=self.cuda and config.smoothing_ratio > MANY_NEIGHBORS,
             reach=(int(self.grid.reach[1]), int(self.grid.reach[2])),
             solids=tuple(kind for kind, there in ((WALLS, self.walls), (BODIES, self.bodies)) if there.count),
+            several=several,
+            yields=yields,
         )
         self.walls.sort(wall_position, 0, world_count)
         if self.cuda:

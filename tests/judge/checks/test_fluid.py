@@ -8,7 +8,7 @@ import pytest
 from tests.judge.conftest import WALL, WATER, G
 from wsim.judge.checks.fluid import CheckFluidMass, CheckHydrostatic, CheckPlanFluid
 from wsim.judge.evidence.evidence import Evidence
-from wsim.scene.world import Parameter
+from wsim.scene.world import Parameter, Shape, Static
 
 SOUND = 20.0  # [m/s]
 
@@ -57,6 +57,26 @@ def test_a_fluid_has_the_mass_of_its_box(pool, kept, passes):
     finding = only(CheckFluidMass().evaluate(Evidence(recording)))
     assert finding.passed == passes == (finding.target is None) and finding.unit == "kg"
     assert finding.value == pytest.approx(kept * 0.66 * 0.51 * 0.3 * 1000.0, rel=1e-3)
+
+
+@pytest.mark.parametrize(("removed", "passes"), [(True, True), (False, False)])
+def test_what_stands_still_in_a_fluid_takes_its_place(pool, removed, passes):
+    """A block of 18 litres in 101: without the particles that were in it the fluid is whole, with them too much."""
+    case, size, at = pool(), (0.3, 0.2, 0.3), (0.1, 0.0, 0.17)
+    bare = only(CheckFluidMass().evaluate(Evidence(case.recording))).expected
+    block = Shape(prim="/World/block/s", kind="box", size=size, position=at)
+    world = case.recording.world
+    case = case.world(statics=[*world.statics, Static(prim="/World/block", shapes=[block])])
+    track = case.recording.fluids[WATER]
+    inside = (np.abs(track.position[0] - at) < np.array(size) / 2).all(axis=1) & removed
+    kept = replace(
+        track,
+        position=track.position[:, ~inside],
+        velocity=track.velocity[:, ~inside],
+        density=track.density[:, ~inside],
+    )
+    finding = only(CheckFluidMass().evaluate(Evidence(replace(case.recording, fluids={WATER: kept}))))
+    assert finding.passed is passes and finding.expected == pytest.approx(bare - 18.0, abs=1.0)
 
 
 # ---- against the plan

@@ -103,6 +103,18 @@ def test_a_lift_that_no_particle_feels(said):
     assert finding.limit - finding.expected == pytest.approx((0.6 if said > 1.0 else -0.4) * layer, rel=0.02)
 
 
+@pytest.mark.parametrize(("viscosity", "sound"), [(1e-3, False), (100.0, True), (1e6, True)])
+@pytest.mark.parametrize("falls", [True, False])
+def test_drag_holds_back_what_moves_in_honey(viscosity, sound, falls):
+    """The particles' momentum and pressure tell nothing of it; what it pushes along is told as before."""
+    recording = immersed(said=1.3)
+    qd = recording.body_qd.copy()
+    qd[..., 2] = -0.27 if falls else 0.27
+    fluid = recording.world.fluids[0].model_copy(update={"viscosity": viscosity})
+    thick = with_world(replace(recording, body_qd=qd), fluids=[fluid])
+    assert only(ask(CheckLift(), thick)).passed is (sound and falls)
+
+
 @pytest.mark.parametrize("said", [0.93, 1.0, 1.07])
 def test_what_particles_do_not_resolve_is_let_pass(said):
     assert only(ask(CheckLift(), immersed(said=said))).passed

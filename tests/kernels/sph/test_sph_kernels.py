@@ -72,14 +72,14 @@ def random_particles(periodic: bool):
     return config, places, worlds
 
 
-def sorted_world(config: ConfigSPH, places, worlds, lists: bool):
+def sorted_world(config: ConfigSPH, places, worlds, lists: bool, several: bool = False):
     """The three kinds on the CPU, sorted, with random motions and volumes, and the kernels for them."""
     fluid = places[0]
     grid = make_grid(config, fluid.min(axis=0), fluid.max(axis=0), config.support, not lists, 2)
     rng, kinds = np.random.default_rng(3), []
     with wp.ScopedDevice(DEVICE):
         for place, world, name in zip(places, worlds, (FLUID, WALLS, BODIES), strict=True):
-            kind = SortedParticles(world, grid, 2, 400 if lists else 0, name)
+            kind = SortedParticles(world, grid, 2, 400 if lists else 0, name, several=several)
             position = wp.array(place, dtype=wp.vec3)
             kind.sort(position, 0, 2)
             if not lists:
@@ -88,11 +88,14 @@ def sorted_world(config: ConfigSPH, places, worlds, lists: bool):
             volume = rng.uniform(0.5, 1.5, kind.count) * config.spacing**3
             kind.point.assign(np.column_stack([place, volume]).astype(np.float32)[order])
             kind.motion.assign(rng.normal(size=(kind.count, 4)).astype(np.float32)[order])
+            if several:
+                liquid = np.stack([rng.choice([700.0, 1000.0], kind.count), rng.uniform(0.0, 3.0, kind.count)], axis=1)
+                kind.liquid.assign(liquid.astype(np.float32)[order])
             if kind.full.shape[0]:
                 kind.full.assign(rng.uniform(size=kind.count).astype(np.float32)[order])
             kinds.append(kind)
         reach = int(grid.reach[1]), int(grid.reach[2])
-        programs = Programs.make(lists, tuple(map(bool, config.periodic)), not lists, reach, (WALLS, BODIES))
+        programs = Programs.make(lists, tuple(map(bool, config.periodic)), not lists, reach, (WALLS, BODIES), several)
         if lists:
             overflow = wp.zeros(1, dtype=int)
             water, walls, bodies = (kind.species for kind in kinds)
@@ -138,13 +141,13 @@ def test_a_walk_passes_over_blocks_that_are_far_from_bodies():
     assert 0 < near.sum() < 0.8 * len(near)
 
 
-@pytest.mark.parametrize("periodic", [False, True])
-def test_walking_the_cells_gives_the_sums_of_the_lists(periodic):
+@pytest.mark.parametrize(("periodic", "several"), [(False, False), (True, False), (False, True)])
+def test_walking_the_cells_gives_the_sums_of_the_lists(periodic, several):
     """The walk is what a GPU does; here it runs on the CPU, over other cells."""
     config, places, worlds = random_particles(periodic)
     results = []
     for lists in (True, False):
-        grid, kinds, programs = sorted_world(config, places, worlds, lists)
+        grid, kinds, programs = sorted_world(config, places, worlds, lists, several)
         fluid, walls, bodies = (kind.species for kind in kinds)
         n, method = kinds[0].count, Method()
         method.h, method.speed_of_sound, method.diffusion = config.smoothing_length, 3.0, 0.1
@@ -166,7 +169,7 @@ def test_walking_the_cells_gives_the_sums_of_the_lists(periodic):
             wp.launch(gather_bodies, kinds[2].count, [bodies.order, owner, handed], [bodies.handed])
             for kind in kinds[1:]:
                 inputs = [*shared, viscosity, gravity, fluid, kind.species]
-                wp.launch(programs.extrapolate, kind.count, inputs, [kind.motion, kind.facing])
+                wp.launch(programs.extrapolate, kind.count, inputs, [kind.motion, kind.facing, kind.liquid])
             parch(kinds[2])
             inputs = [*shared, viscosity, gravity, fluid, walls, bodies, mass, 1e-3]
             wp.launch(programs.momentum, n, inputs, moved)
@@ -177,6 +180,8 @@ def test_walking_the_cells_gives_the_sums_of_the_lists(periodic):
             assert 5 < np.count_nonzero(seeped[:, 1]) < np.count_nonzero(seeped[:, 0] > -1e3) < kinds[2].count
         solid = [original(kind, kind.facing) for kind in kinds[1:]]
         solid += [np.maximum(original(kind, kind.motion), -1e3) for kind in kinds[1:]]
+        if several:
+            solid += [original(kind, kind.liquid) for kind in kinds[1:]]
         found = [given_back, original(kinds[0], pressure), *solid, original(kinds[2], bodies.across), *seeped.T]
         results.append([*found, *(a.numpy() for a in (*moved, *pushes))])
     for of_lists, of_walk in zip(*results, strict=True):

@@ -62,11 +62,10 @@ class FluidPush:
     def __init__(self, evidence: Evidence, method: Method) -> None:
         self._evidence, self._method = evidence, method
         self._tracks = [evidence.track(fluid) for fluid in evidence.world.fluids]
-        self._mass = np.concatenate(
-            [
-                np.full(t.position.shape[1], particle_mass(f))
-                for f, t in zip(evidence.world.fluids, self._tracks, strict=True)
-            ]
+        counts = [track.position.shape[1] for track in self._tracks]
+        self._mass, self._at_rest, self._viscosity = (
+            np.repeat([of(fluid) for fluid in evidence.world.fluids], counts)
+            for of in (particle_mass, lambda fluid: fluid.density, lambda fluid: fluid.viscosity)
         )
         holders = {fluid.container for fluid in evidence.world.fluids if fluid.volume is not None}
         self.vessels = frozenset(i for i, body in enumerate(evidence.world.bodies) if body.prim in holders)
@@ -97,8 +96,8 @@ class FluidPush:
             np.concatenate([getattr(track, name)[k] for track in self._tracks]).astype(np.float64)
             for name in ("position", "velocity", "density")
         )
-        pressure = self._method.sound**2 * (density - self._method.density)
-        return Particles(place, velocity, pressure, self._mass / density)
+        pressure = self._method.sound**2 * (density - self._at_rest)
+        return Particles(place, velocity, pressure, self._mass / density, self._at_rest, self._viscosity)
 
     def _in_fluid(self, body: Carried, fluid: Particles) -> tuple[Floats, Taken]:
         """What fluid that is near a body gives it, (3,) [N], and what its particles take from it."""
@@ -140,7 +139,8 @@ class FluidPush:
         way = place[b] - fluid.place[f]
         mirrored = self._mirrored(velocity, solid)
         approach = np.einsum("ij,ij->i", mirrored[b] - fluid.velocity[f], way)
-        viscous = np.where(approach < 0.0, m.artificial + m.laminar, m.laminar)
+        laminar = m.laminar * fluid.viscosity[f]
+        viscous = np.where(approach < 0.0, m.artificial * fluid.density[f] + laminar, laminar)
         viscous = viscous * approach / (pairs["v"] ** 2 + COINCIDENT * m.h**2)
         pressure = solid.pressure[b] + fluid.pressure[f] + 2.0 * m.background
         size = volume[b] * fluid.volume[f] * m.slope(pairs["v"]) * (viscous - pressure)
@@ -150,7 +150,8 @@ class FluidPush:
         """The velocity (n, 3) that the fluid meets in particles of a body: its own, mirrored."""
         m, past = self._method, solid.velocity - velocity
         slip = past - 2.0 * np.einsum("ij,ij->i", past, solid.facing)[:, None] * solid.facing
-        share = m.artificial / max(m.artificial + m.laminar, 1e-300)
+        artificial, laminar = m.artificial * solid.density, m.laminar * solid.viscosity
+        share = (artificial / np.maximum(artificial + laminar, 1e-300))[:, None]
         return np.asarray(velocity + share * slip - (1.0 - share) * past, dtype=np.float64)
 
 

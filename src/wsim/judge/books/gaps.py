@@ -67,7 +67,7 @@ def forces_in_gaps(method: Method, solid: Solid, count: int) -> Floats:
         return np.zeros((count, 3))
     pressure, has = _seeped(method, solid, pairs)
     of_wall = solid.owner[pairs.s] == WALL
-    still = pressure[pairs.b] - method.density * (pairs.way @ method.gravity)
+    still = pressure[pairs.b] - solid.taken.density[pairs.b] * (pairs.way @ method.gravity)
     mirrored = of_wall & ~has[pairs.s]
     its = np.where(mirrored, np.maximum(still, -method.background), pressure[pairs.s])
     push = pairs.between & has[pairs.b] & (has[pairs.s] | of_wall)

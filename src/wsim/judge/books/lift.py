@@ -104,18 +104,23 @@ class Column:
 
 
 class Surroundings:
-    """A fluid in an upright tank, about its bodies, at K frames."""
+    """A fluid in an upright tank, about its bodies, at K frames.
+
+    Attributes:
+        frames: Which they are, (K,).
+    """
 
     def __init__(self, evidence: Evidence, fluid: Fluid, container: Container, frames: NDArray[np.intp]) -> None:
         """`frames` are those of the evidence that the fluid was recorded at."""
         self._evidence, self._fluid, self._track = evidence, fluid, evidence.track(fluid)
+        self.frames = frames
         self._q = evidence.body_q[frames]
         self._heights = np.array([evidence.ends(i) for i in range(len(evidence.world.bodies))])[
             :, :, frames
         ]  # (B, 2, K)
         half = np.array(container.inner_size) / 2.0
         self._low, self._high = np.array(container.inner_center) - half, np.array(container.inner_center) + half
-        self._sound = fluid.speed_of_sound or float(evidence.recording.metadata.get("speed_of_sound") or math.nan)
+        self._sound = evidence.sound(fluid) or math.nan
         self._mass = particle_mass(fluid)
 
     @cached_property

@@ -9,7 +9,7 @@ Adams 2012; docs/sph.md):
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,13 +29,13 @@ AT_ONCE = 2000  # particles of a solid, whose pairs fit into memory
 
 @dataclass(frozen=True)
 class Method:
-    """Settings of the SPH that a recording was made with, and its fluids' common numbers."""
+    """Settings of the SPH that a recording was made with."""
 
     h: float  # smoothing length [m]
     sound: float  # [m/s]
-    density: float  # at rest [kg/m^3]
-    artificial: float  # alpha h c rho_0 [Pa s]
-    laminar: float  # K mu [Pa s]
+    density: float  # at rest, of the densest fluid, which is in gaps that none is seen near [kg/m^3]
+    artificial: float  # alpha h c: times rho_0 a viscosity [m^2/s]
+    laminar: float  # K: times mu another
     background: float  # pressure [Pa]
     gravity: Floats  # (3,) [m/s^2]
 
@@ -43,15 +43,14 @@ class Method:
     def of(evidence: Evidence) -> Method | None:
         """What a recording says; None where it does not."""
         facts: Any = evidence.recording.metadata.get("sph")
-        fluid = evidence.world.fluids[0]
-        sound = fluid.speed_of_sound or float(evidence.recording.metadata.get("speed_of_sound") or 0.0)
+        fluids = evidence.world.fluids
+        sound = evidence.sound(fluids[0])
         if not facts or sound <= 0.0:
             return None
         h = float(facts["smoothing_length"])
         return Method(
-            h, sound, fluid.density, float(facts["artificial_viscosity"]) * h * sound * fluid.density,
-            float(facts["laminar_factor"]) * fluid.viscosity, float(facts["background_pressure"]),
-            np.array(evidence.world.gravity),
+            h, sound, max(fluid.density for fluid in fluids), float(facts["artificial_viscosity"]) * h * sound,
+            float(facts["laminar_factor"]), float(facts["background_pressure"]), np.array(evidence.world.gravity),
         )  # fmt: skip
 
     @property
@@ -78,11 +77,13 @@ class Particles:
     velocity: Floats  # (N, 3) [m/s]
     pressure: Floats  # (N,) [Pa]
     volume: Floats  # (N,) [m^3]
+    density: Floats  # (N,) at rest [kg/m^3]
+    viscosity: Floats  # (N,) [Pa s]
 
     def about(self, low: Floats, high: Floats) -> Particles:
         """Those in a box."""
         rows = np.flatnonzero(((self.place >= low) & (self.place <= high)).all(axis=1))
-        return Particles(self.place[rows], self.velocity[rows], self.pressure[rows], self.volume[rows])
+        return Particles(*(getattr(self, field.name)[rows] for field in fields(self)))
 
 
 @dataclass(frozen=True)
@@ -94,6 +95,8 @@ class Taken:
     velocity: Floats  # (n, 3) [m/s]
     facing: Floats  # (n, 3) the way to it, of length 1
     gradient: Floats  # (n, 3) sum of V grad W over it [1/m]
+    density: Floats  # (n,) at rest, of what is near in the mean; the densest's where nothing is [kg/m^3]
+    viscosity: Floats  # (n,) [Pa s]
 
 
 def pairs_within(tree: Any, place: Floats, reach: float) -> Iterator[tuple[slice, Any]]:
@@ -114,14 +117,17 @@ def taken(method: Method, fluid: Particles, place: Floats, pairs: Any) -> Taken:
 
     total = summed(np.ones(len(b)))
     some = np.maximum(total, 1e-300)
-    pressure = (summed(fluid.pressure[f] + method.density * (way @ method.gravity)) / some)[:, 0]
+    pressure = (summed(fluid.pressure[f] + fluid.density[f] * (way @ method.gravity)) / some)[:, 0]
     facing = -summed(way)
     facing /= np.maximum(np.linalg.norm(facing, axis=1), 1e-300)[:, None]
     slopes = method.slope(pairs["v"]) * fluid.volume[f]
     gradient = np.stack([np.bincount(b, slopes * column, n) for column in way.T], axis=1).astype(np.float64)
+    wet = total[:, 0] > 0.0
+    density, viscosity = ((summed(each[f]) / some)[:, 0] for each in (fluid.density, fluid.viscosity))
     return Taken(
-        total[:, 0] > 0.0, np.maximum(pressure, -method.background), summed(fluid.velocity[f]) / some, facing, gradient
-    )
+        wet, np.maximum(pressure, -method.background), summed(fluid.velocity[f]) / some, facing, gradient,
+        np.where(wet, density, method.density), viscosity,
+    )  # fmt: skip
 
 
 def own_gradient(method: Method, place: Floats, volume: Floats) -> Floats:
@@ -135,6 +141,6 @@ def own_gradient(method: Method, place: Floats, volume: Floats) -> Floats:
 
 def joined(parts: Sequence[Taken]) -> Taken:
     """Of particles part by part."""
-    none = Taken(np.zeros(0, dtype=bool), np.zeros(0), *(np.zeros((0, 3)) for _ in range(3)))
-    names = ("wet", "pressure", "velocity", "facing", "gradient")
-    return Taken(*(np.concatenate([getattr(part, name) for part in (none, *parts)]) for name in names))
+    flat, way = np.zeros(0), np.zeros((0, 3))
+    none = Taken(np.zeros(0, dtype=bool), flat, way, way, way, flat, flat)
+    return Taken(*(np.concatenate([getattr(each, field.name) for each in (none, *parts)]) for field in fields(Taken)))

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.defaults import FLUID_VISCOSITY
+from wsim.geometry.shapes import into, kind_of
 from wsim.judge.checks.check import Check, Checks, listed, share_about
 from wsim.judge.verdict import RepairTarget
+from wsim.scene.contact import within
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -18,9 +20,17 @@ if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
     from wsim.plan.schema import PlanObject
-    from wsim.scene.world import Fluid
+    from wsim.scene.world import Fluid, Shape
 
     Floats = NDArray[np.float64]
+
+
+MOST_PLACES = 200_000  # at which a fluid's box is looked at
+
+
+def _beside(shape: Shape, middle: Floats, reach: float) -> bool:
+    """Whether no point of a shape is within a reach of a place [m]."""
+    return math.dist(shape.position, middle) > reach + kind_of(shape).radius_about
 
 
 @dataclass
@@ -38,10 +48,11 @@ class CheckFluidMass(Check):
         count = int(track.count[0]) if len(track.time) else 0
         volume = fluid.amount
         inside = sum(self._drowned(evidence, fluid, i) for i in range(len(evidence.world.bodies)))
+        still, about = self._standing(evidence, fluid)
         value = fluid.density * fluid.cell * count
-        expected = fluid.density * max(volume - inside, 0.0)
+        expected = fluid.density * max(volume - inside - still, 0.0)
         # A body pushes out the particles whose centres are in it or near: up to a layer of half a spacing all round.
-        skin = sum(self._skin(evidence, fluid, i) for i in range(len(evidence.world.bodies)))
+        skin = about - still + sum(self._skin(evidence, fluid, i) for i in range(len(evidence.world.bodies)))
         low, high = share_about(expected, self.share)
         target = RepairTarget(kind="fluid", prim=fluid.prim, parameter="spacing", direction="change")
         return self.between(
@@ -50,6 +61,26 @@ class CheckFluidMass(Check):
             limit_from=f"density times volume, to {self.share:g}, and a layer at what stands in it",
             target=target,
         )  # fmt: skip
+
+    @staticmethod
+    def _standing(evidence: Evidence, fluid: Fluid) -> tuple[float, float]:
+        """How much of the fluid's box what stands still takes up, and with half a spacing around it [m^3]."""
+        if fluid.volume is not None:  # a vessel's hollow is its own, and not the box
+            return 0.0, 0.0
+        size, middle = np.array(fluid.size), np.array(fluid.center)
+        edge = max(0.5 * fluid.spacing, float((size.prod() / MOST_PLACES) ** (1.0 / 3.0)))
+        counts = np.maximum(np.round(size / edge), 1).astype(int)
+        axes = [((np.arange(n) + 0.5) / n - 0.5) * length for n, length in zip(counts, size, strict=True)]
+        places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3) + middle
+        depth = np.full(len(places), -np.inf)
+        for shape in (shape for static in evidence.world.statics for shape in static.shapes if shape.collides):
+            reach = 0.5 * float(np.linalg.norm(size)) + fluid.spacing
+            own = fluid.container is not None and within(shape.prim, fluid.container)  # it ends at its tank's walls
+            if own or (shape.kind != "plane" and _beside(shape, middle, reach)):
+                continue
+            depth = np.maximum(depth, kind_of(shape).depth(into(shape, places)))
+        cell = float(size.prod()) / len(places)
+        return cell * float((depth > 0.0).sum()), cell * float((depth > -0.5 * fluid.spacing).sum())
 
     @staticmethod
     def _drowned(evidence: Evidence, fluid: Fluid, i: int) -> float:
@@ -86,7 +117,8 @@ class CheckPlanFluid(Check):
         found: list[Finding] = []
         for item, fluid in known:
             found += [*self._density(fluid, item), *self._viscosity(fluid, item), *self._level(evidence, fluid, item)]
-            found += [*self._block(fluid, item), *self._velocity(fluid, item)]
+            found += [*self._block(fluid, item), *self._velocity(fluid, item), *self._vessel(evidence, fluid, item)]
+            found += self._law(fluid, item)
         return found or ([self.passed("Fluids are of the plan's density, viscosity and level")] if known else [])
 
     def _viscosity(self, fluid: Fluid, item: PlanObject) -> list[Finding]:
@@ -103,6 +135,24 @@ class CheckPlanFluid(Check):
                 limit_from=f"the plan's, or water's where it has none, to {self.share:.0%}", target=target
             )
         ]  # fmt: skip
+
+    def _law(self, fluid: Fluid, item: PlanObject) -> list[Finding]:
+        """What yields or thins does so as the plan has it."""
+        found = []
+        for name, unit in (("yield_stress", "Pa"), ("flow_index", "1")):
+            planned, own = getattr(item.registration, name), getattr(fluid, name)
+            if planned is None or abs(own - planned) <= max(self.share * planned, 1e-9):
+                continue
+            target = RepairTarget(kind="fluid", prim=fluid.prim, parameter=name, suggested=planned, unit=unit)
+            words = name.replace("_", " ")
+            found.append(
+                self.between(
+                    f"{fluid.prim} has a {words} of {own:.4g} {unit}; the plan has {planned:.4g} {unit}",
+                    own, share_about(planned, self.share), unit, expected=planned, prim=fluid.prim, time=0.0,
+                    limit_from=f"the plan's, to {self.share:.0%}", target=target,
+                )
+            )  # fmt: skip
+        return found
 
     def _block(self, fluid: Fluid, item: PlanObject) -> list[Finding]:
         """What stands as a block of its own is as large and where the plan has it."""
@@ -156,19 +206,41 @@ class CheckPlanFluid(Check):
             )
         ]  # fmt: skip
 
+    def _vessel(self, evidence: Evidence, fluid: Fluid, item: PlanObject) -> list[Finding]:
+        """It is in what the plan has it in, and as much of it as the plan says."""
+        row, volume = item.relation("PLACE-IN"), item.registration.volume
+        found = []
+        prim = evidence.prim(row.ref) if row is not None and row.ref is not None else None
+        if prim is not None and not f"{fluid.container}/".startswith(f"{prim}/"):  # of an asset the body that is hollow
+            target = RepairTarget(kind="program", prim=fluid.prim, parameter="fills", why="the plan's")
+            message = f"{fluid.prim} is in {fluid.container or 'no vessel'}; the plan has it in {prim}"
+            found.append(self.failed(message, prim=fluid.prim, target=target))
+        if volume is not None and abs(fluid.amount / volume - 1.0) > self.share:
+            target = RepairTarget(kind="fluid", prim=fluid.prim, parameter="volume", suggested=volume, unit="m^3")
+            found.append(
+                self.between(
+                    f"{fluid.prim} is {fluid.amount:.4g} m^3; the plan has {volume:.4g} m^3",
+                    fluid.amount, share_about(volume, self.share), "m^3", expected=volume, prim=fluid.prim, time=0.0,
+                    limit_from=f"the plan's volume, to {self.share:.0%}", target=target,
+                )
+            )  # fmt: skip
+        return found
+
     def _level(self, evidence: Evidence, fluid: Fluid, item: PlanObject) -> list[Finding]:
         row, container = item.relation("FREE-SURFACE-AT"), evidence.container_of(fluid)
-        if row is None or row.value is None or container is None:
+        if row is None or row.value is None or (container is None and fluid.volume is None):
             return []
-        floor = container.inner_center[2] - container.inner_size[2] / 2
-        level = fluid.center[2] + fluid.size[2] / 2 - floor
+        level = fluid.size[2]  # of a vessel the box's floor is the lowest point of its hollow
+        if container is not None:
+            floor = container.inner_center[2] - container.inner_size[2] / 2
+            level = fluid.center[2] + fluid.size[2] / 2 - floor
         if abs(level - row.value) <= self.spacings * fluid.spacing:
             return []
         off = self.spacings * fluid.spacing
         target = RepairTarget(kind="fluid", prim=fluid.prim, parameter="level", suggested=row.value, unit="m")
         return [
             self.between(
-                f"{fluid.prim} is filled to {level:.4g} m above the floor of {container.prim}; "
+                f"{fluid.prim} is filled to {level:.4g} m above the floor of {fluid.container}; "
                 f"the plan has {row.value:.4g} m",
                 level, (row.value - off, row.value + off), "m", expected=row.value, prim=fluid.prim, time=0.0,
                 limit_from=f"the plan's level, to {self.spacings:g} particle spacings", target=target
@@ -189,7 +261,7 @@ class CheckHydrostatic(Check):
         """One finding for each fluid that is at rest in a container over the final window: the slope [Pa/m]."""
         found = []
         for fluid in evidence.world.fluids:
-            sound = fluid.speed_of_sound or float(evidence.recording.metadata.get("speed_of_sound") or 0.0)
+            sound = evidence.sound(fluid)
             track = evidence.track(fluid)
             if sound <= 0.0 or track.density.size == 0 or evidence.gravity <= 0.0:
                 continue
@@ -206,7 +278,7 @@ class CheckHydrostatic(Check):
         if container is None or not len(frames):
             return None
         level = evidence.level(fluid)
-        height = level.height - level.floor
+        height = level.height - level.bottom
         speed = math.sqrt(float(track.mean(np.einsum("tni,tni->tn", track.velocity, track.velocity))[frames].mean()))
         if height < self.layers * fluid.spacing or speed > self.still * evidence.velocity_scale(height):
             return None

@@ -64,6 +64,7 @@ class CheckFluidPush(Check):
             or impulse is None
             or not fluids
             or not evidence.world.bodies
+            or not all(fluid.newtonian for fluid in fluids)  # how viscous it is where it yields is not recorded
             or (method := Method.of(evidence)) is None
         ):
             return []

@@ -40,6 +40,7 @@ class CheckLift(Check):
     sure: float = 0.95  # of the mean, from how the intervals scatter (Student's t)
     least: int = 4  # intervals
     most: int = 60  # of a body that are looked at
+    narrowest: float = 0.6  # of a pipe's radius that a ball has, up to which Faxen's factor holds
     spilled: float = 0.001  # share of the particles, beyond which what is left in the tank is not a whole pool
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
@@ -78,19 +79,34 @@ class CheckLift(Check):
         noise = float(stdtrit(many - 1.0, 0.5 + 0.5 * self.sure)) * spread / math.sqrt(many)
         layer = fluid.spacing * fluid.density * evidence.gravity * area
         said, told = float(given[rows].mean()), float(felt.mean())
+        drag = self._drag(evidence, fluid, i, float(evidence.body_qd[about.frames[rows], i, 2].mean()))
+        limits = told - self.low * layer - noise + min(drag, 0.0), told + self.high * layer + noise + max(drag, 0.0)
         body, start, end = evidence.world.bodies[i], float(time[rows[0]]), float(time[rows[-1] + 1])
         return self.between(
             f"{fluid.prim} is said to lift {body.prim} by {said:.4g} N; by the momentum and the pressure of its "
             f"particles about it, it gives {told:.4g} N",
-            said, (told - self.low * layer - noise, told + self.high * layer + noise), "N", told, prim=body.prim,
+            said, limits, "N", told, prim=body.prim,
             time=end, span=(start, end),
             limit_from=f"the fluid's momentum about it; {self.high:g} spacing of fluid over its area more, "
-            f"{self.low:g} less, as far as particles tell levels, and how sure the mean is, to {self.sure:.0%}",
+            f"{self.low:g} less, as far as particles tell levels, how sure the mean is, to {self.sure:.0%}, and the "
+            f"drag of its viscosity, of which that tells nothing",
             target=RepairTarget(
                 kind="program", prim=body.prim, direction="change",
                 why="something lifts it in the fluid's name that no particle feels",
             ),
         )  # fmt: skip
+
+    def _drag(self, evidence: Evidence, fluid: Fluid, i: int, velocity: float) -> float:
+        """The most that viscosity gives body i, which moves up at a velocity [N].
+
+        A creeping body has no more drag than a ball around it (Hill & Power 1956), which in a pipe has Stokes' times a
+        factor (Faxen 1923).
+        """
+        container, radius = evidence.container_of(fluid), float(evidence.motion.radius[i])
+        narrow = radius / (min(container.inner_size[:2]) / 2.0) if container is not None else 0.0
+        share = min(narrow, self.narrowest)
+        pipe = 1.0 / (1.0 - 2.104 * share + 2.09 * share**3 - 0.95 * share**5)
+        return -6.0 * math.pi * fluid.viscosity * radius * velocity * pipe
 
 
 CHECKS: Checks = (CheckLift,)

@@ -132,7 +132,7 @@ class CheckExplosion(Check):
 
     def _fluid(self, evidence: Evidence, fluid: Fluid, free: float) -> Finding:
         track = evidence.track(fluid)
-        sound = fluid.speed_of_sound or float(evidence.recording.metadata.get("speed_of_sound") or math.inf)
+        sound = evidence.sound(fluid) or math.inf
         limit = min(max(self.fluid_factor * free, squeezed_speed(evidence, fluid, free), self.least), sound)
         square = np.nan_to_num(np.einsum("tni,tni->tn", track.velocity, track.velocity))
         # What is under everything solid has left the world, and falls on and on: that is a leak, and counted as one.

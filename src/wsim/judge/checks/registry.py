@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from wsim.judge.checks import (
+    buoyancy,
     camera,
     catches,
     contact,
@@ -55,7 +56,7 @@ PHYSICS = (
     physics, settled, stated, scheduled, continuity, motion, forces, recorded, recorded_state, recorded_ties, impacts,
     rolling, catches, energy, contact, rest, joint, cord, mass, plan, plan_closed, plan_joints, plan_cords,
     plan_contacts, plan_motion, plan_openings, plan_vehicles, plan_land,
-    fluid, openings, fluid_books, fluid_push, lift, fluid_height, water, camera,
+    fluid, openings, fluid_books, fluid_push, lift, buoyancy, fluid_height, water, camera,
 )  # fmt: skip
 
 

@@ -13,6 +13,7 @@ from wsim.geometry.shapes import into, kind_of
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.checks.physics import lows
 from wsim.judge.evidence.containment import local
+from wsim.judge.evidence.layers import layers, mass_displaced
 from wsim.scene.contact import within
 
 if TYPE_CHECKING:
@@ -131,7 +132,9 @@ class CheckDraft(Check):
         late = evidence.last(0.5)
         for fluid in evidence.world.fluids:
             container = evidence.container_of(fluid)
-            if container is None or len(evidence.world.fluids) > 1:
+            if container is None or (stack := layers(evidence, fluid))[0] is not fluid:  # of each container once
+                continue
+            if not all(each.newtonian for each in stack):  # one that yields holds what hangs in it
                 continue
             half = np.array(container.inner_size)[:2] / 2
             for i, body in enumerate(evidence.world.bodies):
@@ -144,9 +147,11 @@ class CheckDraft(Check):
 
     def _displaced(self, evidence: Evidence, fluid: Fluid, i: int) -> Finding:
         position, rotation = evidence.resting_pose(i)
-        level, body = evidence.level(fluid).height, evidence.world.bodies[i]
+        solid, body = evidence.solid(i), evidence.world.bodies[i]
         below = [
-            fluid.density * evidence.solid(i).volume_below(rotation, float(position[2]), level + by * fluid.spacing)
+            mass_displaced(
+                evidence, fluid, lambda z: solid.volume_below(rotation, float(position[2]), z), by * fluid.spacing
+            )
             for by in (0.0, self.high, -self.low)
         ]
         least = (1.0 - self.share) * body.mass - (below[1] - below[0])

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import conjugate, rotate
-from wsim.judge.evidence.containment import pools_of
+from wsim.judge.evidence.containment import alike, pools_of
 from wsim.judge.evidence.joints import JointTrack, track_of
 from wsim.judge.evidence.motion import Motion
 from wsim.judge.evidence.recorded import MissingError, Recorded
@@ -37,6 +37,7 @@ class Level:
     height: float  # from the conserved volume of fluid, and what the bodies displace
     seen: float | None  # from the highest particles; None where bodies cover the surface
     floor: float  # the container's inner floor
+    bottom: float  # what it lies on: the floor, or the surface of what is under it
 
 
 class Evidence(Recorded):
@@ -85,8 +86,15 @@ class Evidence(Recorded):
         return self._joints[joint.prim]
 
     # ---- fluid
+    def sound(self, fluid: Fluid) -> float:
+        """Numerical speed of sound in a fluid [m/s], which all fluids that are simulated at once share; 0: not told."""
+        return float(self.recording.metadata.get("speed_of_sound") or 0.0) or fluid.speed_of_sound
+
     def level(self, fluid: Fluid) -> Level:
-        """The fluid's still surface over the final window; MissingError without particles or container."""
+        """The fluid's still surface over the final window; MissingError without particles or container.
+
+        Of several liquids in a container each lies on those whose middle is lower.
+        """
         if fluid.prim not in self._levels:
             self._levels[fluid.prim] = self._measure_level(fluid)
         return self._levels[fluid.prim]
@@ -98,10 +106,26 @@ class Evidence(Recorded):
             raise MissingError(f"{fluid.prim} has no container, or no particles in the last second: it has no level")
         chosen = frames[np.linspace(0, len(frames) - 1, min(LEVEL_FRAMES, len(frames))).astype(int)]
         floor = container.inner_center[2] - container.inner_size[2] / 2
-        inside = 1.0 - self.containment(container, fluid).outside[chosen]
-        volume = fluid.cell * float(np.mean(track.count[chosen] * inside))
-        height = self._level_of_volume(container, floor, volume)
-        return Level(height, self._level_seen(fluid, container, track, chosen, height), floor)
+        same, under = self._beside(fluid, container, chosen)
+        own, below = (sum(self._volume_in(container, each, chosen) for each in some) for some in (same, under))
+        height = self._level_of_volume(container, floor, below + own)
+        bottom = self._level_of_volume(container, floor, below) if under else floor
+        return Level(height, self._level_seen(fluid, container, track, chosen, height), floor, bottom)
+
+    def _volume_in(self, container: Container, fluid: Fluid, chosen: NDArray[np.intp]) -> float:
+        """What of a fluid a container holds, in the mean of frames [m^3]."""
+        inside = 1.0 - self.containment(container, fluid).elsewhere[chosen]
+        return fluid.cell * float(np.mean(self.track(fluid).count[chosen] * inside))
+
+    def _beside(self, fluid: Fluid, container: Container, chosen: NDArray[np.intp]) -> tuple[list[Fluid], list[Fluid]]:
+        """The fluids of a container that are as dense as one of them, and those that it lies on."""
+        own = [each for each in self.world.fluids if each is fluid or self.container_of(each) is container]
+        same = [each for each in own if alike(each, fluid)]
+        others = [each for each in own if not alike(each, fluid)]
+        if not others:
+            return same, []
+        middle = {each.prim: float(np.nanmean(self.track(each).position[chosen, :, 2])) for each in own}
+        return same, [each for each in others if middle[each.prim] < middle[fluid.prim]]
 
     def _level_of_volume(self, container: Container, floor: float, volume: float) -> float:
         """The height at which the space under the surface, less the bodies in it, holds the volume."""

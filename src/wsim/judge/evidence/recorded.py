@@ -12,7 +12,7 @@ import numpy as np
 
 from wsim.geometry.rotations import mean_rotation, upwards
 from wsim.geometry.shapes import Solid
-from wsim.judge.evidence.containment import Containment, local
+from wsim.judge.evidence.containment import Containment, falls_beside, local
 from wsim.judge.evidence.final_window import final_window
 from wsim.judge.evidence.placed import as_parts, placed_shapes, placed_together
 from wsim.judge.evidence.stacked import Stacked, stacked
@@ -239,8 +239,10 @@ class Recorded:
         """Which particles a container holds, to a spacing; worked out once. MissingError."""
         key = container.prim, fluid.prim
         if key not in self._containments:
-            position, poured = self.track(fluid).position, bool(self.world.taps)
-            self._containments[key] = Containment.of(container, position, fluid.spacing, poured)
+            position, taps = self.track(fluid).position, self.world.taps
+            self._containments[key] = Containment.of(
+                container, position, fluid.spacing, bool(taps), falls_beside(container, taps)
+            )
         return self._containments[key]
 
     def outside(self, fluid: Fluid) -> Floats:

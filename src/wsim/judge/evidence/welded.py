@@ -6,10 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.judge.evidence.layers import mass_displaced, needed_of
+
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from wsim.judge.evidence.evidence import Evidence
     from wsim.scene.world import Fluid
 
+    Floats = NDArray[np.float64]
 
 HALVINGS = 40  # of a height, to where single precision ends
 
@@ -37,7 +42,13 @@ def displaced(evidence: Evidence, i: int, fluid: Fluid) -> tuple[float, float]:
     """What a body and those that are one with it must displace to float, and their own volume [m^3]."""
     parts = welded(evidence, i)
     mass = sum(evidence.world.bodies[k].mass for k in parts)
-    return mass / fluid.density, sum(evidence.solid(k).volume for k in parts)
+    volume = sum(evidence.solid(k).volume for k in parts)
+    return needed_of(evidence, fluid, mass, volume), volume
+
+
+def volume_of(evidence: Evidence, poses: dict[int, tuple[Floats, Floats]], height: float) -> float:
+    """How much of bodies, at places and turns, is below a height [m^3]."""
+    return sum(evidence.solid(k).volume_below(q, float(at[2]), height) for k, (at, q) in poses.items())
 
 
 def still_draft(evidence: Evidence, i: int, needed: float) -> float:
@@ -57,8 +68,7 @@ def still_draft(evidence: Evidence, i: int, needed: float) -> float:
     low, high = float(ends[:, 0].min()), float(ends[:, 1].max())
     for _ in range(HALVINGS):
         middle = (low + high) / 2
-        under = sum(evidence.solid(k).volume_below(q, float(at[2]), middle) for k, (at, q) in poses.items())
-        low, high = (middle, high) if under < needed else (low, middle)
+        low, high = (middle, high) if volume_of(evidence, poses, middle) < needed else (low, middle)
     return (low + high) / 2 - float(evidence.ends(i)[0][evidence.window].mean())
 
 
@@ -71,12 +81,11 @@ def unheld_lift(evidence: Evidence, i: int, fluid: Fluid) -> float | None:
     parts, here = welded(evidence, i), evidence.window
     if held(evidence, parts):
         return None
-    surface = evidence.level(fluid).height
     poses = {k: evidence.resting_pose(k) for k in parts}
-    under = sum(evidence.solid(k).volume_below(q, float(at[2]), surface) for k, (at, q) in poses.items())
+    under = mass_displaced(evidence, fluid, lambda z: volume_of(evidence, poses, z))
     mass = sum(evidence.world.bodies[k].mass for k in parts)
     pushed = np.asarray(evidence.recording.contact_force[here][:, parts], dtype=np.float64) @ evidence.up
     rising = evidence.body_qd[here][:, i, :3] @ evidence.up
     span = float(evidence.time[here][-1] - evidence.time[here][0])
     gained = mass * float(rising[-1] - rising[0]) / span if span > 0.0 else 0.0
-    return float((fluid.density * under - mass) * evidence.gravity + pushed.sum(axis=1).mean() - gained)
+    return float((under - mass) * evidence.gravity + pushed.sum(axis=1).mean() - gained)

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import conjugate, level, rotate
+from wsim.judge.evidence.layers import mass_displaced
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.evidence.support import Support, height_over, support_of
-from wsim.judge.evidence.welded import welded
+from wsim.judge.evidence.welded import volume_of, welded
 from wsim.judge.language.contacts import gap, normals, touch_reach
 from wsim.judge.language.measure import Measure, measures, mends
 from wsim.judge.repair.lasting import settled
@@ -186,8 +187,8 @@ def _by_fluid(signals: Signals, name: str, fluid: Fluid) -> tuple[float, float]:
     slab = solid.volume_below(rotation, z, height + thin) - solid.volume_below(rotation, z, height - thin)
     film = specific * max(0.0, level - bottom) * slab / (2 * thin)
     poses = {k: evidence.resting_pose(k) for k in welded(evidence, i)}
-    under = sum(evidence.solid(k).volume_below(q, float(at[2]), level) for k, (at, q) in poses.items())
-    return specific * under, film
+    under = mass_displaced(evidence, fluid, lambda height: volume_of(evidence, poses, height))
+    return under * evidence.gravity, film
 
 
 # ---- what to change

@@ -64,7 +64,7 @@ def _wet(signals: Signals, name: str, fluid_name: str, within: float | None) -> 
 
 
 def _surface(signals: Signals, evidence: Evidence, fluid: Fluid) -> tuple[Array, float]:
-    """Height of the still surface at each frame, (1, T), and of the container's floor [m]."""
+    """Height of the still surface at each frame, (1, T), and of what the fluid lies on [m]."""
     level, container, track = evidence.level(fluid), evidence.container_of(fluid), evidence.track(fluid)
     if container is None:
         raise MissingError(f"{fluid.prim} has no container: it has no level")
@@ -72,7 +72,7 @@ def _surface(signals: Signals, evidence: Evidence, fluid: Fluid) -> tuple[Array,
     end = float(inside[track.time >= evidence.window_start - 1e-9].mean())
     area = container.inner_size[0] * container.inner_size[1]
     missing = (end - inside) / area
-    return (level.height - missing[latest(track.time, signals.time)])[None], level.floor
+    return (level.height - missing[latest(track.time, signals.time)])[None], level.bottom
 
 
 @measures(Floats)
@@ -166,7 +166,7 @@ def _under(signals: Signals, name: str, wet: _Wet, above: float) -> list[Measure
 @measures(FillsTo)
 def _fills_to(asked: FillsTo, signals: Signals) -> list[Measure]:
     evidence, fluid = signals.fluid(asked.fluid)
-    surface, floor = _surface(signals, evidence, fluid)
+    surface, floor = _surface(signals, evidence, fluid)[0], evidence.level(fluid).floor
     tolerance = asked.within or SPACINGS * fluid.spacing
     source = "the objective's" if asked.within else f"{SPACINGS:g} particle spacings: what the particles resolve"
     return [
@@ -252,7 +252,7 @@ def _sink(asked: Sinks | Submerged, finding: Finding, evidence: Evidence) -> Rep
         return heavier(evidence, prim, fluid.density)
     level, i = evidence.level(fluid), evidence.index(prim)
     height = float((evidence.ends(i)[1] - evidence.ends(i)[0])[evidence.window].mean())
-    depth = level.height - level.floor
+    depth = level.height - level.bottom
     if height > depth:
         return RepairTarget(
             kind="fluid", prim=fluid.prim, parameter="level", direction="raise", current=depth,

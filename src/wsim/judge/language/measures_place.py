@@ -37,7 +37,6 @@ if TYPE_CHECKING:
 
     from wsim.judge.language.signals import Signals
     from wsim.plan.schema.predicate import Place
-    from wsim.scene.world import Container
 
     Floats = NDArray[np.float64]
 
@@ -119,7 +118,7 @@ def _contained_in(asked: ContainedIn, signals: Signals) -> list[Measure]:
 def _stays_inside(asked: StaysInside, signals: Signals) -> list[Measure]:
     prim = signals.prim(asked.object)
     if not signals.moves(asked.object):
-        return [_fluid_inside(asked, signals, signals.container(asked.ref))]
+        return [_fluid_inside(asked, signals)]
     hollow = hollow_of(signals, asked.ref)
     room, size = hollow.depth(signals, asked.object), signals.solid(asked.object).smallest
     what = f"way from its centre to the walls and floor of {hollow.prim}"
@@ -127,12 +126,15 @@ def _stays_inside(asked: StaysInside, signals: Signals) -> list[Measure]:
     return [Measure(what, prim, room, -asked.within, "m", size, source, at_most=False)]
 
 
-def _fluid_inside(asked: StaysInside, signals: Signals, container: Container) -> Measure:
+def _fluid_inside(asked: StaysInside, signals: Signals) -> Measure:
+    """Of a tank, or of the vessel that it fills."""
     evidence, fluid = signals.fluid(asked.object)
-    track = evidence.track(fluid)
-    value = evidence.containment(container, fluid).outside[latest(track.time, signals.time)][None]
+    track, prim = evidence.track(fluid), signals.prim(asked.ref)
+    own = fluid.volume is not None and f"{fluid.container}/".startswith(f"{prim}/")
+    outside = evidence.outside(fluid) if own else evidence.containment(signals.container(asked.ref), fluid).outside
+    value = outside[latest(track.time, signals.time)][None]
     source = f"{asked.share:g} of the particles, farther out than a spacing of {fluid.spacing:g} m"
-    return Measure(f"part outside {container.prim}", fluid.prim, value, asked.share, "1", asked.share, source)
+    return Measure(f"part outside {prim}", fluid.prim, value, asked.share, "1", asked.share, source)
 
 
 def latest(known: Floats, time: Floats) -> NDArray[np.intp]:

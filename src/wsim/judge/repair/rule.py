@@ -114,7 +114,7 @@ def faster_sound(evidence: Evidence, fluid: Fluid, wanted: float, why: str) -> R
 
 def sound_speed(evidence: Evidence, fluid: Fluid) -> float | None:
     """A fluid's speed of sound as it was simulated [m/s]."""
-    sound = fluid.speed_of_sound or evidence.recording.metadata.get("speed_of_sound")
+    sound = evidence.sound(fluid)
     return float(sound) if sound else None
 
 

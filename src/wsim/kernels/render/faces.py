@@ -58,6 +58,23 @@ def fresnel(cos_angle: float, ior_from: float, ior_to: float) -> float:
 
 
 @wp.func
+def refracted(direction: wp.vec3, normal: wp.vec3, ior_from: float, ior_to: float) -> wp.vec3:
+    """Where a ray goes on behind a face into a denser medium, by Snell's law.
+
+    Args:
+        direction: Of the ray, unit.
+        normal: Of the face, unit, to either side.
+        ior_from: Refractive index before the face.
+        ior_to: Behind it, not less.
+    """
+    facing = wp.where(wp.dot(direction, normal) < 0.0, normal, -normal)
+    ratio = ior_from / ior_to
+    cosine = -wp.dot(direction, facing)
+    beyond = wp.sqrt(1.0 - ratio * ratio * (1.0 - cosine * cosine))
+    return wp.normalize(ratio * direction + (ratio * cosine - beyond) * facing)
+
+
+@wp.func
 def span_of_box(half: wp.vec3, to_world: wp.transform, origin: wp.vec3, direction: wp.vec3) -> wp.vec2:
     """Where a ray enters and leaves a box; where it misses, the second is the smaller."""
     rotation = wp.transform_get_rotation(to_world)
@@ -141,6 +158,7 @@ def exit_of_fluid(media: Media, entry: Face, origin: wp.vec3, direction: wp.vec3
     """The face where a ray that runs inside a fluid leaves it for good, given the first face it meets.
 
     Gaps of air shorter than the fluid's are no gaps: particles keep that far off a body's skin and off each other.
+    Where another fluid begins behind one it is left there.
     """
     face = entry
     gap = media.fluid_gap[entry.medium]
@@ -154,6 +172,9 @@ def exit_of_fluid(media: Media, entry: Face, origin: wp.vec3, direction: wp.vec3
         again = face_of_fluid(media, origin, direction, start, gap)
         if again.inside or again.t - face.t > gap:
             break
+        if again.medium != face.medium:
+            face.t = again.t
+            break
         start = again.t + 2.0e-5 * (1.0 + again.t)
         face = face_of_fluid(media, origin, direction, start, FAR)
     return face
@@ -161,10 +182,20 @@ def exit_of_fluid(media: Media, entry: Face, origin: wp.vec3, direction: wp.vec3
 
 @wp.func
 def fluid_after(media: Media, known: Face, origin: wp.vec3, direction: wp.vec3, start: float, t_end: float) -> Face:
-    """The fluid's first face after `start`: the known one while it lies ahead."""
+    """The fluid's first face after `start`: the known one while it lies ahead.
+
+    Surfaces of two fluids that lie on each other may overlap by a hair: a ray that comes into one and next leaves
+    another has been in that.
+    """
     face = known
     if media.fluid_mesh != wp.uint64(0) and known.t < start:
         face = face_of_fluid(media, origin, direction, start, FAR)
+        if media.fluid_gap.shape[0] > 1 and not face.inside and face.t < t_end:
+            behind = face_of_fluid(media, origin, direction, face.t + 2.0e-5 * (1.0 + face.t), FAR)
+            if behind.inside and behind.medium != face.medium:
+                face.inside = True
+                face.medium = behind.medium
+                return face
         if face.inside:
             face = exit_of_fluid(media, face, origin, direction, t_end)
     return face

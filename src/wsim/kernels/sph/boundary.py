@@ -80,6 +80,8 @@ def make_compress(sums: PairSums) -> wp.Kernel:
         world = walls.world[walls.order[s]]
         x, at_rest = wp.vec3(p[0], p[1], p[2]), wp.vec3(0.0, 0.0, 0.0)
         weight_of_water = rest_density[world] * gravity[world]
+        if wp.static(sums.several):
+            weight_of_water = gravity[world]
         total = of_fluid(grid, walls, fluid, s, world, method.shape, x, at_rest, 0.0, weight_of_water)
         given_back = float(0.0)
         if total[0] > 0.0 and total[1] > -method.background_pressure * total[0]:
@@ -108,6 +110,7 @@ def make_extrapolate(sums: PairSums) -> wp.Kernel:
         motion: wp.array(dtype=wp.vec4),
         # Data out:
         facing: wp.array(dtype=wp.vec4),
+        liquid: wp.array(dtype=wp.vec2),
     ):
         """Pressure and velocity of each solid particle from the fluid near it (Adami et al. 2012, eqs. 23, 27).
 
@@ -122,16 +125,26 @@ def make_extrapolate(sums: PairSums) -> wp.Kernel:
         them with water. Both forms are linear in v_b, so that its mean, weighted with the viscosities, serves both.
 
         `motion` is that of the solid: its own velocity comes in, the mirrored one and the pressure go out; `DRY` where
-        no fluid is near. `facing` gets the way to the fluid, and sum W.
+        no fluid is near. `facing` gets the way to the fluid, and sum W; `liquid`, of several, what is near in the mean,
+        where nothing is the world's.
         """
         s = first + wp.tid()
         p = load_record(solid.point, s)
         world = solid.world[solid.order[s]]
         weight_of_water = rest_density[world] * gravity[world]
-        artificial = method.artificial_viscosity * method.h * method.speed_of_sound * rest_density[world]
-        laminar = method.laminar_factor * viscosity[world]
+        if wp.static(sums.several):
+            weight_of_water = gravity[world]
         x, at_rest = wp.vec3(p[0], p[1], p[2]), wp.vec3(0.0, 0.0, 0.0)
         total = of_fluid(grid, solid, fluid, s, world, method.shape, x, at_rest, 0.0, weight_of_water)
+        near = wp.vec2(rest_density[world], viscosity[world])
+        if wp.static(sums.several):
+            if total[0] > 0.0:
+                near = wp.vec2(total[8], total[9]) / total[0]
+            liquid[s] = near
+        artificial = method.artificial_viscosity * method.h * method.speed_of_sound * near[0]
+        laminar = method.laminar_factor * near[1]
+        if wp.static(sums.yields):
+            laminar = 0.0 * laminar  # it does not ask for this velocity (`yielding`)
         m = motion[s]
         if total[0] <= 0.0:
             motion[s] = wp.vec4(m[0], m[1], m[2], DRY)

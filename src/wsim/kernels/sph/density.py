@@ -103,6 +103,8 @@ def make_continuity(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         v = wp.vec3(m[0], m[1], m[2])
         world = fluid.world[fluid.order[s]]
         rho0 = rest_density[world]
+        if wp.static(sums.several):
+            rho0 = fluid.liquid[s][0]
         # p^H_j - p^H_i = rho_0 g.(x_j - x_i): the incompressible column, within the 1 % of compression.
         weight = rho0 * gravity[world]
         total = of_fluid(grid, fluid, fluid, s, world, method.shape, x, v, m[3], weight)

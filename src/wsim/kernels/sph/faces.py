@@ -52,6 +52,7 @@ class Faces:
     mesh_low: wp.array(dtype=wp.vec3)
     mesh_high: wp.array(dtype=wp.vec3)
     reach: float  # [m]: nothing is deeper in a mesh; it is put back before
+    plane_flow: bool  # whether the flow is in the x-z plane: meshes are prisms without ends, and nothing leaves y = 0
 
 
 @wp.func
@@ -83,6 +84,17 @@ def _out_of_mesh(mesh: wp.uint64, reach: float, x: wp.vec3) -> wp.vec3:
     if not found.result or found.sign > 0.0:
         return wp.vec3(0.0, 0.0, 0.0)
     return wp.mesh_eval_position(mesh, found.face, found.u, found.v) - x
+
+
+@wp.func
+def _out_of_prism(mesh: wp.uint64, reach: float, x: wp.vec3) -> wp.vec3:
+    """The way out of a prism along y of which a flow in the x-z plane sees the sides alone."""
+    found = wp.mesh_query_point_sign_normal(mesh, x, reach)
+    if not found.result or found.sign > 0.0:
+        return wp.vec3(0.0, 0.0, 0.0)
+    out = wp.mesh_eval_position(mesh, found.face, found.u, found.v) - x
+    out[1] = 0.0
+    return out
 
 
 @wp.kernel(enable_backward=False)
@@ -125,8 +137,12 @@ def keep_out(
         stop -= wp.min(wp.dot(v + stop, wp.normalize(out)), 0.0) * wp.normalize(out)
     for k in range(faces.mesh_first[world], faces.mesh_first[world + 1]):
         if _between(faces.mesh_low[k], faces.mesh_high[k], x):
-            own = wp.transform_point(wp.transform_inverse(faces.mesh_pose[k]), x)
-            out = wp.transform_vector(faces.mesh_pose[k], _out_of_mesh(faces.mesh[k], faces.reach, own))
+            out = wp.vec3(0.0, 0.0, 0.0)
+            if faces.plane_flow:
+                out = _out_of_prism(faces.mesh[k], faces.reach, x)
+            else:
+                own = wp.transform_point(wp.transform_inverse(faces.mesh_pose[k]), x)
+                out = wp.transform_vector(faces.mesh_pose[k], _out_of_mesh(faces.mesh[k], faces.reach, own))
             x += out
             stop -= wp.min(wp.dot(v + stop, wp.normalize(out)), 0.0) * wp.normalize(out)
     for k in range(faces.plane_first[world], faces.plane_first[world + 1]):

@@ -42,6 +42,7 @@ def _stop_at_face(at_walls: AtWalls, v: wp.vec3) -> wp.vec3:
 def make_momentum(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
     """The kernel that sums forces and moves the fluid, given the kinds of solids."""
     of_fluid, of_walls, of_bodies = sums.force[FLUID], sums.force_at_walls, sums.force[BODIES]
+    creep_in_fluid, creep_at_walls, creep_at_bodies = (sums.creep[kind] for kind in (FLUID, WALLS, BODIES))
 
     @wp.kernel(**sums.options)
     def momentum(
@@ -82,6 +83,8 @@ def make_momentum(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         v = wp.vec3(m[0], m[1], m[2])
         world = fluid.world[i]
         viscous = viscosities(method, rest_density[world], viscosity[world])
+        if wp.static(sums.several):
+            viscous = viscosities(method, 1.0, wp.static(0.0 if sums.yields else 1.0))
         own = m[3] + 2.0 * method.background_pressure
         total = of_fluid(grid, fluid, fluid, s, world, method.shape, x, v, own, viscous)
         at_walls = AtWalls()
@@ -92,6 +95,19 @@ def make_momentum(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         if wp.static(BODIES in solids):
             if is_near(grid, bodies, world, x):
                 total += of_bodies(grid, fluid, bodies, s, world, method.shape, x, v, own, viscous)
+        if wp.static(sums.yields):
+            c = load_record(fluid.creep, s)
+            u, creep = wp.vec3(c[0], c[1], c[2]), viscosities(method, 0.0, 1.0)
+            total += creep_in_fluid(grid, fluid, fluid, s, world, method.shape, x, u, 0.0, creep)
+            if wp.static(WALLS in solids):
+                if is_near(grid, walls, world, x):
+                    drag = creep_at_walls(grid, fluid, walls, s, world, method.shape, x, u, 0.0, creep)
+                    total += drag
+                    for axis in range(3):
+                        at_walls[axis] += drag[axis]
+            if wp.static(BODIES in solids):
+                if is_near(grid, bodies, world, x):
+                    total += creep_at_bodies(grid, fluid, bodies, s, world, method.shape, x, u, 0.0, creep)
         v = v + dt * (p[3] / mass[i] * total + gravity[world])
         if wp.static(WALLS in solids):
             stop = _stop_at_face(at_walls, v)

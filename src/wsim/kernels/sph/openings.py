@@ -3,7 +3,8 @@
 All particles that a world will ever have are there from the start. Those that are not in it are parked: out of reach of
 all others, and sorted into a cell that nothing comes near. A tap takes them from there and leads them along a pipe as
 deep as a kernel reaches, at the speed of its flow, so that the water at its mouth has neighbours all around (the inlet
-buffers of Tafuni et al. 2018). A drain leads away what has come through its face, and parks it. Water in pipes pushes
+buffers of Tafuni et al. 2018). What the pipe's wall does is in
+`pipes`. A drain leads away what has come through its face, and parks it. Water in pipes pushes
 and is pushed, but goes its own way.
 
 The `stage` of a particle is `FREE`, `PARKED`, 1 + the place at a mouth that it comes from, or -2 - the drain that it
@@ -28,6 +29,8 @@ class Taps:
     """T taps of all worlds, and the Q places at their mouths that particles come from, world by world."""
 
     pose: wp.array(dtype=wp.transform)  # (T,): of each mouth; water flows along its z
+    half: wp.array(dtype=wp.vec2)  # (T,): half its width and height [m]; of a round one the radius, twice
+    round: wp.array(dtype=int)
     area: wp.array(dtype=wp.float64)  # [m^2]
     layer: wp.array(dtype=wp.float64)  # from one layer of particles to the next along the flow [m]
     depth: wp.array(dtype=float)  # of its pipe [m]; 0 where there is none
@@ -39,6 +42,8 @@ class Taps:
     phase: wp.array(dtype=wp.float64)  # how far its first particle has come at the start [layers]
     world: wp.array(dtype=int)  # (Q,)
     first: wp.array(dtype=int)  # (W + 1,): where each world's places begin
+    place_first: wp.array(dtype=int)  # (T + 1,): where each tap's places begin
+    tap_first: wp.array(dtype=int)  # (W + 1,): where each world's taps begin
 
 
 @wp.struct
@@ -86,10 +91,9 @@ def run_taps(
 
 
 @wp.func
-def _within(drains: Drains, d: int, x: wp.vec3) -> bool:
-    """Whether a place in a drain's frame is before or behind its face."""
-    half = drains.half[d]
-    if drains.round[d] != 0:
+def within(half: wp.vec2, is_round: int, x: wp.vec3) -> bool:
+    """Whether a place in the frame of a mouth or a face is before or behind it."""
+    if is_round != 0:
         return x[0] * x[0] + x[1] * x[1] <= half[0] * half[0]
     return wp.abs(x[0]) <= half[0] and wp.abs(x[1]) <= half[1]
 
@@ -113,7 +117,7 @@ def take_in(
     world = particle_world[i]
     for d in range(drains.first[world], drains.first[world + 1]):
         own = wp.transform_point(wp.transform_inverse(drains.pose[d]), position[i])
-        if own[2] > 0.0 and own[2] <= drains.depth[d] and _within(drains, d, own):
+        if own[2] > 0.0 and own[2] <= drains.depth[d] and within(drains.half[d], drains.round[d], own):
             stage[i] = -2 - d  # and ACTIVE still, until this step has led it
             wp.atomic_add(tally.drained, world, 1)
             share = wp.float64(mass[i]) / tally.unit[world] * SHARES

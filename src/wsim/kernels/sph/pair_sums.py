@@ -7,7 +7,8 @@ periodic, whether to branch, and what is summed.
 
 Every sum is over the neighbours of one kind, `other`, of particle s of `own`. It takes that one's world, position x,
 velocity v and pressure p, `shape` of `density.Method`, and `common`: what is the same for all pairs, the weight of the
-fluid rho_0 g [N/m^3] or, in the momentum equation, artificial and laminar factor and what is added to r^2.
+fluid rho_0 g [N/m^3] or, in the momentum equation, artificial and laminar factor and what is added to r^2. Where a
+world has several liquids a pair has its own (`liquids`).
 """
 
 from dataclasses import dataclass
@@ -15,10 +16,21 @@ from typing import Any
 
 import warp as wp
 
+from wsim.kernels.sph.creep_sums import CREEP, SHEAR, mirrored
 from wsim.kernels.sph.gap_sums import ACROSS, BEHIND, BEYOND, GAP, GRADIENT, SEEPING, WAY, between
 from wsim.kernels.sph.grid import Grid
+from wsim.kernels.sph.liquids import (
+    AMONG_LIQUIDS,
+    EXTRAPOLATED_LIQUIDS,
+    LIQUID_AT_SOLIDS,
+    MORE_EXTRAPOLATED,
+    ONE,
+    SOLIDS_IN_LIQUIDS,
+    Words,
+    put,
+)
 from wsim.kernels.sph.rows import walk
-from wsim.kernels.sph.species import BODIES, DRY, FLUID, WALLS, Species
+from wsim.kernels.sph.species import BODIES, DRY, FLUID, KINDS, WALLS, Species
 
 BLOCK = 128  # threads of a CUDA block; 3 % quicker than 256 for sums over neighbours, on an H200
 
@@ -38,17 +50,20 @@ Extrapolated = wp.types.vector(length=8, dtype=wp.float32)
 _SUM = """
 #if defined(__CUDA_ARCH__)
     typedef float4 Record;
-    #define WSIM_LOAD(records, j) __ldg(records + j)
+    typedef float2 Liquid;
+    #define WSIM_LOAD(records, j) __ldg((records) + j)
     #define WSIM_SATURATE(x) __saturatef(x)
 #else
     struct Record { float x, y, z, w; };
-    #define WSIM_LOAD(records, j) records[j]
+    struct Liquid { float x, y; };
+    #define WSIM_LOAD(records, j) (records)[j]
     #define WSIM_SATURATE(x) ((x) > 0.0f ? (x) : 0.0f)
 #endif
     const Record* __restrict__ points = reinterpret_cast<const Record*>(other.point.data);
     const Record* __restrict__ motions = reinterpret_cast<const Record*>(other.motion.data);
     const float x0 = x[0], x1 = x[1], x2 = x[2];
     const float inv_support = shape[0], slope_norm = shape[1], support2 = shape[2];
+    OWN_LIQUID
     BEFORE
     SEARCH
     #undef WSIM_LOAD
@@ -70,6 +85,7 @@ _RUN = """
         const float r2 = d0 * d0 + d1 * d1 + d2 * d2;
         IF_NEAR {
             const Record n = WSIM_LOAD(motions, j);
+            ITS_LIQUID
             const float u = sqrtf(r2) * inv_support;
             const float t = WSIM_SATURATE(1.0f - u), t2 = t * t;
             TERM
@@ -94,7 +110,7 @@ _CONTINUITY = (
     """
             const float slope = q.w * (t2 * t);
             divergence += slope * ((v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2);
-            smoothing -= slope * (n.w - p + w0 * d0 + w1 * d1 + w2 * d2);
+            smoothing -= WITHIN_LIQUID slope * (n.w - p + w0 * d0 + w1 * d1 + w2 * d2);
             filled += slope * r2;
     """,
     "return wp::vec_t<3, float>(slope_norm * divergence, slope_norm * smoothing, -slope_norm * filled);",
@@ -140,7 +156,7 @@ _FLUX = (
     """
             const float w = t2 * t2 * (1.0f + 4.0f * u);
             total += w;
-            pressure += w * (n.w + w0 * d0 + w1 * d1 + w2 * d2);
+            pressure += w * (n.w + ITS_DENSITY (w0 * d0 + w1 * d1 + w2 * d2));
             flux -= fulls[j] * q.w * (t2 * t) * (n.x * d0 + n.y * d1 + n.z * d2);
     """,
     "return wp::vec_t<3, float>(total, pressure, slope_norm * flux);",
@@ -154,7 +170,7 @@ _EXTRAPOLATION = (
     """
             const float w = t2 * t2 * (1.0f + 4.0f * u);
             total += w;
-            pressure += w * (n.w + w0 * d0 + w1 * d1 + w2 * d2);
+            pressure += w * (n.w + ITS_DENSITY (w0 * d0 + w1 * d1 + w2 * d2));
             f0 += w * n.x;
             f1 += w * n.y;
             f2 += w * n.z;
@@ -170,6 +186,30 @@ _EXTRAPOLATION = (
     """,
 )
 
+_OF_LIQUIDS = (
+    (
+        _EXTRAPOLATION[0] + MORE_EXTRAPOLATED[0],
+        _EXTRAPOLATION[1] + MORE_EXTRAPOLATED[1],
+        _EXTRAPOLATION[2].replace("wp::vec_t<8, float> sums;", MORE_EXTRAPOLATED[2]),
+    ),
+    EXTRAPOLATED_LIQUIDS,
+)
+
+_FREE = (
+    """
+    const int* __restrict__ orders = other.order.data;
+    const int* __restrict__ stages = other.stage.data;
+    const float w0 = common[0], w1 = common[1], w2 = common[2];
+    float total = 0.0f, pressure = 0.0f;
+    """,
+    """
+            const float w = stages[orders[j]] == 0 ? t2 * t2 * (1.0f + 4.0f * u) : 0.0f;
+            total += w;
+            pressure += w * (n.w + w0 * d0 + w1 * d1 + w2 * d2);
+    """,
+    "return wp::vec_t<2, float>(total, pressure);",
+)
+
 _MOMENTUM = (
     """
     const float v0 = v[0], v1 = v[1], v2 = v[2];
@@ -178,7 +218,7 @@ _MOMENTUM = (
     """,
     """
             const float approach = (v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2;
-            const float push = approach < 0.0f ? (artificial + laminar) * approach : laminar * approach;
+            const float push = approach < 0.0f ? (ARTIFICIAL + LAMINAR) * approach : LAMINAR * approach;
             const float slope = q.w * (t2 * t);
             const float force = slope * (push / (r2 + eta2) - p - n.w);
             a0 += force * d0;
@@ -241,15 +281,22 @@ class PairSums:
             density diffusion over those that hand on a pressure in a gap.
         flux: `Flux`, over fluid around what stands still.
         extrapolation: `Extrapolated`, over fluid.
-        force: Force on a particle per volume, over fluid or bodies.
+        free: Sums of W and of W times pressure, over fluid that no opening leads.
+        force: Force on a particle of fluid per volume, over fluid or bodies.
+        force_on_solid: Force on a particle of a solid per volume, over fluid.
         force_at_walls: `AtWalls`, over walls.
         way: Sum of W times the way to them, over walls or other bodies.
         force_in_gap: `Gap`, over walls or bodies. Takes the particle's pressure and the least that there is as v, the
             weight of the fluid as `common`.
         gradient: Sum of V grad W, over fluid.
+        creep: Force on a particle of fluid by the laminar viscosity alone per volume, over each kind.
+        creep_on_solid: The same on a particle of a solid, over fluid.
+        shear: Sums of -V_j (v_ij.x_ij)^2 / r^2 dW/dr / r and of -V_j x_ij.grad W, over each kind.
         seeping: Sums of W and of W times pressure, and the fewest hops, over what its own body's particles hand on.
         find: Write the neighbours of one kind behind `start` others, but `itself`; returns how many there are then.
             For lists alone.
+        several: Whether each particle of fluid has its own liquid.
+        yields: Whether any of these yields.
         options: What `wp.kernel` is to do with a kernel that sums.
     """
 
@@ -258,13 +305,20 @@ class PairSums:
     continuity_at_bodies: wp.Function
     flux: wp.Function
     extrapolation: wp.Function
+    free: wp.Function
     force: dict[int, wp.Function]
+    force_on_solid: wp.Function
     force_at_walls: wp.Function
     way: dict[int, wp.Function]
     force_in_gap: dict[int, wp.Function]
     gradient: wp.Function
+    creep: dict[int, wp.Function]
+    creep_on_solid: wp.Function
+    shear: dict[int, wp.Function]
     seeping: wp.Function
     find: wp.Function
+    several: bool
+    yields: bool
     options: dict[str, Any]
 
 
@@ -277,7 +331,14 @@ def _images(periodic: tuple[bool, bool, bool]) -> str:
     )
 
 
-def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool, reach: tuple[int, int]) -> PairSums:
+def make_pair_sums(
+    lists: bool,
+    periodic: tuple[bool, bool, bool],
+    branch: bool,
+    reach: tuple[int, int],
+    several: bool = False,
+    yields: bool = False,
+) -> PairSums:
     """Put the loops together.
 
     Args:
@@ -288,9 +349,12 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool,
             saves 5 % at 250, there with blocks enough on a multiprocessor to hide the wait (2 %). A CPU mispredicts it
             a quarter of the time.
         reach: Cells that the support spans along y and z.
+        several: Whether each particle of fluid has its own liquid.
+        yields: Whether any of these yields.
     """
+    among, at_solids, in_solids = (AMONG_LIQUIDS, LIQUID_AT_SOLIDS, SOLIDS_IN_LIQUIDS) if several else (ONE, ONE, ONE)
 
-    def text(parts: tuple[str, str, str], kind: int = FLUID) -> str:
+    def text(parts: tuple[str, str, str], kind: int, words: Words) -> str:
         before, term, after = parts
         loop = _RUN.replace("INDEX", "entries[k]" if lists else "k")
         loop = loop.replace("IF_NEAR", "if (r2 < support2)" if branch else "")
@@ -303,10 +367,10 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool,
         loop = loop.replace("BEYOND", f"{BEYOND:e}f").replace("BEHIND", f"{BEHIND:e}f")
         listed = _LISTED.replace("OTHERS", _OTHERS[kind]).replace("KIND", str(kind)).replace("LOOP", loop)
         search = listed if lists else walk(loop, reach, periodic)
-        return _SUM.replace("SEARCH", search).replace("BEFORE", before).replace("AFTER", after)
+        return put(words, _SUM.replace("SEARCH", search).replace("BEFORE", before).replace("AFTER", after))
 
-    def total(parts: tuple[str, str, str], result: Any, kind: int = FLUID) -> wp.Function:
-        @wp.func_native(text(parts, kind))
+    def total(parts: tuple[str, str, str], result: Any, kind: int = FLUID, words: Words = ONE) -> wp.Function:
+        @wp.func_native(text(parts, kind, words))
         def pair_sum(
             grid: Grid,
             own: Species,
@@ -330,17 +394,26 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool,
     options: dict[str, Any] = {"enable_backward": False, "grid_stride": False, "module": "unique"}
     options |= {"module_options": {"fast_math": True}} | ({"launch_bounds": (BLOCK, 12)} if branch else {})
     return PairSums(
-        continuity=total(_CONTINUITY, wp.vec3),
+        continuity=total(_CONTINUITY, wp.vec3, FLUID, among),
         continuity_at_walls=total(_CONTINUITY_AT_WALLS, wp.vec3, WALLS),
         continuity_at_bodies=total(_CONTINUITY_AT_BODIES, wp.vec4, BODIES),
-        flux=total(_FLUX, Flux),
-        extrapolation=total(_EXTRAPOLATION, Extrapolated),
-        force={kind: total(_MOMENTUM, wp.vec3, kind) for kind in (FLUID, BODIES)},
-        force_at_walls=total(_MOMENTUM_AT_WALLS, AtWalls, WALLS),
+        flux=total(_FLUX, Flux, FLUID, in_solids),
+        extrapolation=total(*(_OF_LIQUIDS if several else (_EXTRAPOLATION, Extrapolated)), FLUID, in_solids),
+        free=total(_FREE, wp.vec2),
+        force={
+            kind: total(_MOMENTUM, wp.vec3, kind, among if kind == FLUID else at_solids) for kind in (FLUID, BODIES)
+        },
+        force_on_solid=total(_MOMENTUM, wp.vec3, FLUID, in_solids),
+        force_at_walls=total(_MOMENTUM_AT_WALLS, AtWalls, WALLS, at_solids),
         way={kind: total(between(WAY, words), wp.vec3, kind) for kind, words in ACROSS.items()},
         force_in_gap={kind: total(between(GAP, words), Gap, kind) for kind, words in ACROSS.items()},
         gradient=total(GRADIENT, wp.vec3),
+        creep={kind: total(CREEP, wp.vec3, kind, mirrored(kind, among, at_solids)) for kind in KINDS},
+        creep_on_solid=total(CREEP, wp.vec3, FLUID, in_solids | {"MIRRORED": "2.0f *"}),
+        shear={kind: total(SHEAR, wp.vec2, kind, mirrored(kind, among, at_solids)) for kind in KINDS},
         seeping=total(SEEPING, wp.vec3, BODIES),
         find=find,
+        several=several,
+        yields=yields,
         options=options,
     )

@@ -7,7 +7,7 @@ from wsim.kernels.sph.grid import Grid
 from wsim.kernels.sph.momentum import viscosities
 from wsim.kernels.sph.pair_sums import Gap, PairSums
 from wsim.kernels.sph.records import load_record
-from wsim.kernels.sph.species import BODIES, DRY, FLUID, WALLS, Species, is_near
+from wsim.kernels.sph.species import BODIES, DRY, WALLS, Species, is_near
 
 # Steps that pressure seeps on from the water that it came from: two spacings in each, far more than a face has. Where
 # that water has left, it grows with each step, until nothing is left of the pressure either.
@@ -96,8 +96,8 @@ def make_look_across(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
 
 def make_push(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
     """The kernel that sums the fluid's forces on the particles of bodies, given the kinds of solids."""
-    of_fluid, of_walls, of_bodies = sums.force[FLUID], sums.force_in_gap[WALLS], sums.force_in_gap[BODIES]
-    gradient, seeping = sums.gradient, sums.seeping
+    of_fluid, of_walls, of_bodies = sums.force_on_solid, sums.force_in_gap[WALLS], sums.force_in_gap[BODIES]
+    gradient, seeping, creep_of_fluid = sums.gradient, sums.seeping, sums.creep_on_solid
 
     @wp.kernel(**sums.options)
     def push(
@@ -147,6 +147,8 @@ def make_push(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         i = bodies.order[s]
         world = bodies.world[i]
         weight_of_water, least = rest_density[world] * gravity[world], -method.background_pressure
+        if wp.static(sums.several):
+            weight_of_water = bodies.liquid[s][0] * gravity[world]
         wet = m[3] > 0.5 * DRY
         pressure = m[3] if wet else load_record(bodies.handed, s)[0]
         own = pressure - 2.0 * least
@@ -154,7 +156,13 @@ def make_push(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         to_hand = wp.vec3(DRY, 0.0, 1.0)
         if wet:
             viscous = viscosities(method, rest_density[world], viscosity[world])
+            if wp.static(sums.several):
+                viscous = viscosities(method, 1.0, wp.static(0.0 if sums.yields else 1.0))
             total = of_fluid(grid, bodies, fluid, s, world, method.shape, x, v, own, viscous)
+            if wp.static(sums.yields):
+                c = load_record(bodies.creep, s)
+                u, creep = wp.vec3(c[0], c[1], c[2]), viscosities(method, 0.0, 1.0)
+                total += creep_of_fluid(grid, bodies, fluid, s, world, method.shape, x, u, 0.0, creep)
         if e[0] != 0.0 or e[1] != 0.0 or e[2] != 0.0:
             given = wp.vec3(pressure, least, 0.0)
             others = of_bodies(grid, bodies, bodies, s, world, method.shape, x, given, own, weight_of_water)

@@ -11,6 +11,7 @@ from wsim.kernels.sph.grid import Grid, block_axis, grid_axis
 FLUID = 0
 WALLS = 1  # what does not move
 BODIES = 2  # what does
+KINDS = (FLUID, WALLS, BODIES)
 
 DRY = wp.constant(-1.0e30)  # pressure of a particle of a solid that no fluid is near [Pa]
 
@@ -23,6 +24,9 @@ class Species:
     world: wp.array(dtype=int)  # of each, in original order
     point: wp.array(dtype=wp.vec4)  # x, y, z, V
     motion: wp.array(dtype=wp.vec4)  # vx, vy, vz and a pressure, or what a wall gives back
+    liquid: wp.array(dtype=wp.vec2)  # rest density, viscosity; of solids what is near; empty with one liquid
+    creep: wp.array(dtype=wp.vec4)  # velocity that the laminar viscosity takes (`yielding`), where a liquid yields
+    stage: wp.array(dtype=int)  # of fluid with openings, in original order: see `openings`
     full: wp.array(dtype=float)  # of fluid: 1 with all around it filled, 0 at a surface
     facing: wp.array(dtype=wp.vec4)  # of solids: the way to the fluid, of length 1; 0 if there is none
     across: wp.array(dtype=wp.vec4)  # of bodies: the way to other solids, likewise

@@ -16,7 +16,7 @@ from wsim.plan.asked.parties import strangers
 from wsim.plan.asked.shown import denies, for_a_while, is_blow_shown, is_idle, shows_not
 from wsim.plan.asked.stated import asks, asks_by_then, ends_by, states
 from wsim.plan.asked.tokens import tokens
-from wsim.plan.asked.vocabulary import CAUSES, GOES, LETS_GO, SCHEDULED, SPRINGY, TURNS
+from wsim.plan.asked.vocabulary import CAUSES, GOES, LETS_GO, OPENED, SCHEDULED, SPRINGY, TURNS
 from wsim.plan.asked.ways import stays_there, wrong_way
 
 if TYPE_CHECKING:
@@ -246,6 +246,9 @@ def _shows(clause: Clause, demand: Demand, plan: Plan) -> bool:
     if demand.base in LETS_GO and any(name in loose for name, _ in clause.things):
         return True
     scheduled = {each.name for each in plan.schedules}
+    openings = {each.name for each in plan.openings}
+    if demand.base in OPENED and any(name in openings for name, _ in clause.things):
+        return True
     if demand.base in SCHEDULED and any(name in scheduled for name, _ in clause.things):
         return True
     return demand.base in CAUSES and any(field in STARTS for _, field in clause.things)

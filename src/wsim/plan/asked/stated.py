@@ -13,7 +13,7 @@ from wsim.plan.schema.formula import Always, Mean, Predicate
 
 if TYPE_CHECKING:
     from wsim.plan.asked.demands import Demand
-    from wsim.plan.schema import Joint, Objective, Plan, PlanObject
+    from wsim.plan.schema import Joint, Objective, OpeningPlan, Plan, PlanObject
     from wsim.plan.schema.nodes import Node
     from wsim.plan.schema.schedules import SchedulePlan
 
@@ -22,11 +22,12 @@ WIDE = 2.5  # times a number, and a part of it: a range that reaches further ask
 FIELDS = {  # by unit: where a number of it may stand in an object or a joint that is named without a property
     "m": ("size", "limits", "anchor", "length"), "kg": ("mass",), "kg/m^3": ("density",),
     "m/s": ("velocity", "surface_velocity", "drive", "actuation"),
+    "m^3": ("volume",), "m^3/s": ("rate",),
     "deg/s": ("spin", "drive"), "deg": ("limits", "drive", "direction"), "N": ("drive",), "s": ("duration",),
 }  # fmt: skip
 OF_UNIT = {  # what can be of no other
     "size": "m", "length": "m", "mass": "kg", "density": "kg/m^3", "velocity": "m/s", "surface_velocity": "m/s",
-    "spin": "deg/s", "duration": "s",
+    "spin": "deg/s", "duration": "s", "volume": "m^3",
 }  # fmt: skip
 OPEN = ("place", "level", "actuation")  # a stated distance may be the difference of two places, or one of many
 _POINTS = ("target", "center", "path", "at")  # of formulas: places in the world
@@ -146,6 +147,9 @@ def values(plan: Plan, name: str, field: str) -> Iterator[float]:
     for schedule in plan.schedules:
         if schedule.name == name:
             yield from _of_schedule(schedule, field)
+    for opening in plan.openings:
+        if opening.name == name:
+            yield from _of_opening(plan, opening, field)
 
 
 def _of_object(plan: Plan, item: PlanObject, field: str) -> Iterator[float]:
@@ -162,6 +166,8 @@ def _of_object(plan: Plan, item: PlanObject, field: str) -> Iterator[float]:
         yield from (math.degrees(math.atan2(z, math.hypot(x, y))), math.degrees(math.atan2(y, x)))
     elif field == "size":
         yield from (*item.size, *(2.0 * edge for edge in item.size), *(item.dimensions or ()))
+    elif field == "volume":
+        yield from _volume(plan, item)
     elif field in ("mass", "density"):
         yield from (value for value in (getattr(item, field),) if value is not None)
     elif field in ("friction", "restitution", "rolling"):
@@ -173,6 +179,16 @@ def _of_object(plan: Plan, item: PlanObject, field: str) -> Iterator[float]:
         if item.pose is not None:
             yield from (*item.pose.position, *item.pose.rotation_deg)
             yield from _distances(plan, item)
+
+
+def _volume(plan: Plan, item: PlanObject) -> Iterator[float]:
+    """Of a fluid that stands in a tank, or of a block or a body [m^3]."""
+    held, level = item.relation("PLACE-IN"), item.relation("FREE-SURFACE-AT")
+    tank = next((each for each in plan.objects if held is not None and each.name == held.ref), None)
+    if item.volume is not None or item.registration.volume is not None:
+        yield from (value for value in (item.volume, item.registration.volume) if value is not None)
+    elif tank is not None and tank.primitive == "tank" and level is not None and level.value is not None:
+        yield tank.size[0] * tank.size[1] * level.value
 
 
 def _distances(plan: Plan, item: PlanObject) -> Iterator[float]:
@@ -195,6 +211,31 @@ def _of_joint(joint: Joint, field: str) -> Iterator[float]:
         yield from joint.limits or ()
     elif field == "drive" and joint.drive is not None:
         yield from (joint.drive.velocity, joint.drive.position, joint.drive.max_force or 0.0)
+
+
+def of_opening(plan: Plan, opening: OpeningPlan, demand: Demand) -> str:
+    """Which of an opening's properties has a number; empty where none has."""
+    fields = {
+        "m": ("radius", "size", "offset"), "s": ("start", "stop"), "m^3/s": ("rate",), "m^3": ("rate",),
+        "m/s": ("rate", "drop_speed"),
+    }.get(demand.unit, ())  # fmt: skip
+    found = (field for field in fields if any(close(value, demand) for value in _of_opening(plan, opening, field)))
+    return next(found, "")
+
+
+def _of_opening(plan: Plan, opening: OpeningPlan, field: str) -> Iterator[float]:
+    """Its number; of a mouth the width, too, of a time how long it is open, of a rate the rain and all that comes."""
+    value = getattr(opening, field, None)
+    if field in ("size", "offset"):
+        yield from value or ()
+    elif value is not None:
+        yield float(value)
+    if field == "radius":
+        yield 2.0 * (opening.radius or 0.0)
+    elif field == "stop":
+        yield (opening.stop or plan.simulation.duration) - (opening.start or 0.0)
+    elif field == "rate" and opening.rate is not None:
+        yield from (opening.rate / opening.area, opening.poured(plan.simulation.duration))
 
 
 def _of_schedule(schedule: SchedulePlan, field: str) -> Iterator[float]:

@@ -9,9 +9,9 @@ from wsim.plan.asked.demands import REQUIRED, Demand, demands
 from wsim.plan.asked.doers import outsiders
 from wsim.plan.asked.often import asks_often
 from wsim.plan.asked.shown import SHOWN_BY, shows, shows_not
-from wsim.plan.asked.stated import FIELDS, asks, asks_by_then, close, states, values
+from wsim.plan.asked.stated import FIELDS, asks, asks_by_then, close, of_opening, states, values
 from wsim.plan.asked.tokens import tokens
-from wsim.plan.asked.vocabulary import CAUSES, SCHEDULED, stem
+from wsim.plan.asked.vocabulary import CAUSES, OPENED, SCHEDULED, stem
 from wsim.plan.schema.clause import OF_JOINTS, WHOLE, Clause
 
 if TYPE_CHECKING:
@@ -65,7 +65,10 @@ def evidence(plan: Plan, demand: Demand) -> Iterator[int | str]:
             fields |= {"spin": bool(item.angular_velocity_deg), "actuation": bool(item.registration.actuation)}
             yield from (f"{item.name}.{field}" for field, has in fields.items() if has)
         yield from (f"{joint.name}.drive" for joint in plan.joints if joint.drive is not None)
-    if not numbers and demand.base in SCHEDULED and plan.schedules:
+    opened = [each.name for each in plan.openings if each.start or each.stop]
+    if not numbers and demand.base in OPENED and opened:
+        yield from opened
+    elif not numbers and demand.base in SCHEDULED and plan.schedules:
         yield from (schedule.name for schedule in plan.schedules)
     elif not numbers and demand.kind == "state" and base == demand.base:
         yield from (item.name for item in plan.objects if item.primitive != "ground")
@@ -93,6 +96,9 @@ def _of_number(plan: Plan, demand: Demand) -> Iterator[int | str]:
     for cord in plan.cords if demand.unit == "m" else ():
         if close(cord.length or 0.0, demand):
             yield f"{cord.name}.length"
+    for opening in plan.openings if demand.unit else ():
+        if field := of_opening(plan, opening, demand):
+            yield f"{opening.name}.{field}"
     for schedule in plan.schedules if demand.unit else ():
         if states(plan, schedule.name, "", demand):
             yield schedule.name

@@ -71,6 +71,7 @@ BEYOND = as_set(
 SPRINGY = as_set("compress squeeze stretch")
 # What a schedule does: "opens after a second", "is lifted at 0.5 m/s". How a thing goes on then, or stops, is seen.
 SCHEDULED = CAUSES - as_set("roll run slide swing") | as_set("apply close lift lower open raise shut twist wait")
+OPENED = as_set("open close shut turn switch stop start")  # what is done to a tap, at the times that it has
 IRREGULAR = {
     "ran": "run", "fell": "fall", "fallen": "fall", "slid": "slide", "swung": "swing", "spun": "spin",
     "struck": "strike", "threw": "throw", "thrown": "throw", "shot": "shoot", "flew": "fly", "flown": "fly",
@@ -174,7 +175,8 @@ _OTHERS = {
     },
     "deg/s": {6.0: "rpm"},
     "m/s": {1000 / 3600: "kmh kph", 1609.344 / 3600: "mph"},
-    "m^3": {0.001: "l litre litres liter liters"},
+    "m^3": {0.001: "l litre litres liter liters", 1e-6: "ml millilitre millilitres milliliter milliliters",
+            1e-5: "cl centilitre centilitres", 0.003785411784: "gallon gallons"},
     "N": {1.0: "n newton newtons", 1000.0: "kn"},
     "Hz": {1.0: "hz hertz"},
     "1": {0.01: "% percent"},
@@ -191,10 +193,10 @@ def _units() -> dict[tuple[str, ...], tuple[str, float]]:
     times = [(word, size) for size, words in _TIMES.items() for word in words.split()]
     for said, (unit, size) in plain.items():
         word = said[0]
-        if unit not in ("m", "deg"):
+        if unit not in ("m", "deg", "m^3"):
             continue
         for per, seconds in times:
-            for between in ("/", "per", "a", "each", "every"):
+            for between in ("/", "per", "a", "an", "each", "every"):
                 if between in ("/", "per") or len(per) > 3:
                     found[(word, between, per)] = (f"{unit}/s", size / seconds)
         if unit == "m" and size == 1.0:

@@ -13,7 +13,9 @@ from typing import Literal
 from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.layout import extents
+from wsim.plan.layout.bodies import hollow
 from wsim.plan.schema import FromTerrain, Plan, PlanObject, Pose, Vec3
+from wsim.plan.vessels import filled_box
 
 View = Literal["above", "side"]
 Style = Literal["solid", "glass", "fluid", "wide"]
@@ -162,6 +164,8 @@ def _fluid(item: PlanObject, items: dict[str, PlanObject]) -> _Solid | None:
         (row for row in item.relations if row.predicate == "PLACE-IN" or row.predicate.startswith("fills_")), None
     )
     tank = items.get(row.ref or "") if row is not None else None
+    if row is not None and tank is not None and tank.pose is not None and tank.primitive == "asset":
+        return _in_vessel(item, tank, tank.pose)
     if row is None or tank is None or tank.primitive != "tank" or tank.pose is None:
         return None
     x, y, z = tank.size
@@ -173,6 +177,16 @@ def _fluid(item: PlanObject, items: dict[str, PlanObject]) -> _Solid | None:
     else:
         level = z / 2 if row.predicate == "fills_container_lower_half" else z
     return _box(tank.pose, (x, y, level), WALL + level / 2)
+
+
+def _in_vessel(item: PlanObject, vessel: PlanObject, pose: Pose) -> _Solid | None:
+    level = item.relation("FREE-SURFACE-AT")
+    try:
+        edges = filled_box(vessel, level.value if level is not None else None, item.registration.volume)
+        low = hollow(vessel).low
+    except UserError:  # an asset that this catalogue lacks, or that is not hollow
+        return None
+    return _box(pose, edges, low[2] + edges[2] / 2)
 
 
 def _placed(pose: Pose, local: Vec3) -> Vec3:

@@ -11,7 +11,7 @@ from wsim.plan.schema.base import Sparse, Text
 # What of an object, and of a joint, the judge holds the world to, where the plan states it.
 OF_OBJECTS = (
     "size", "mass", "density", "material", "color", "place", "velocity", "direction", "spin", "surface_velocity",
-    "friction", "restitution", "rolling", "level", "actuation",
+    "friction", "restitution", "rolling", "level", "volume", "actuation",
 )  # fmt: skip
 OF_JOINTS = ("axis", "anchor", "limits", "drive")
 OF_CORDS = ("length", "stiffness", "damping", "rest_length")

@@ -76,6 +76,9 @@ class Registration(Strict):
     density: Positive | None = None  # [kg/m^3]
     spacing: Positive | None = None  # of a fluid's particles [m]
     viscosity: NotNegative | None = None  # of a fluid [Pa s]
+    volume: Positive | None = None  # of a fluid in a vessel, where no level is said [m^3]
+    yield_stress: NotNegative | None = None  # of a fluid [Pa]: mud, paint, toothpaste
+    flow_index: Positive | None = None  # of a fluid: below 1 it thins when sheared
     actuation: list[Actuation] = Field(default_factory=list, max_length=100)
 
     @model_validator(mode="after")
@@ -83,6 +86,11 @@ class Registration(Strict):
         if self.mass is not None and self.density is not None:
             raise ValueError("mass and density are both given; keep one of them")
         return self
+
+    @model_serializer(mode="wrap")
+    def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Without a volume where there is none, so that a plan without one reads as it always did."""
+        return {name: value for name, value in write(self).items() if value is not None or name != "volume"}
 
 
 class PlanObject(Strict):

@@ -20,19 +20,37 @@ def support_problems(plan: Draft) -> list[str]:
 
 def _surfaces(plan: Draft) -> Iterator[str]:
     """A fluid says how high it stands, and in what."""
+    items = {item.name: item for item in plan.objects}
     for i, item in enumerate(plan.objects):
         if item.role != "fluid":
+            if item.registration.volume is not None:
+                yield f"objects.{i}.registration.volume: {item.name} is no fluid; remove it"
             continue
+        yield from _amount(i, item, items)
         filled = any(row.spec.fills for row in item.relations)
         contained = item.relation("PLACE-IN") is not None
         level = item.relation("FREE-SURFACE-AT") is not None
         if not (filled or contained or item.size):
             yield f"objects.{i}: the fluid {item.name} needs PLACE-IN with a container, or a size (x, y, z) in metres"
-        elif contained and not (filled or level or item.size):
+        elif contained and not (filled or level or item.size or item.registration.volume):
             yield (
                 f'objects.{i}.topology.relation: the fluid {item.name} needs FREE-SURFACE-AT with "value", its level '
-                f"above the inner floor in metres; or fills_container_to_top in place of PLACE-IN, or a size (x, y, z)"
+                f"above the inner floor in metres, or registration.volume in m^3; or fills_container_to_top in place "
+                "of PLACE-IN, or a size (x, y, z)"
             )
+
+
+def _amount(i: int, item: PlanObject, items: dict[str, PlanObject]) -> Iterator[str]:
+    """One amount of a fluid; and only a tank holds none at the start."""
+    level, held = item.relation("FREE-SURFACE-AT"), item.relation("PLACE-IN")
+    vessel = items.get(held.ref or "") if held is not None else None
+    if item.registration.volume is not None and (level is not None or item.size or vessel is None):
+        yield (
+            f"objects.{i}.registration.volume: of a fluid that is PLACE-IN something, in place of its level and size; "
+            "keep one"
+        )
+    if vessel is not None and vessel.primitive == "asset" and level is not None and level.value == 0.0:
+        yield f"objects.{i}: {item.name} stands 0 m high in {vessel.name}; only a tank can start empty"
 
 
 def _order(plan: Draft) -> Iterator[str]:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from wsim.defaults import GRAVITY
 from wsim.plan.schema import Plan, PlanObject
 from wsim.plan.spacing import ACROSS, spacing_of
+from wsim.plan.vessels import filled_box, vessel_of
 from wsim.program.compose.draft import Draft
 from wsim.program.compose.poses import position
 from wsim.program.source import number, tuple_of
@@ -21,14 +22,22 @@ def container(item: PlanObject) -> str | None:
     return relation.ref if relation is not None else None
 
 
+def level(item: PlanObject) -> float:
+    """How high a fluid fills its container [m]; infinity where a block of it stands there."""
+    relation = item.relation("FREE-SURFACE-AT")
+    return math.inf if relation is None or relation.value is None else relation.value
+
+
 def arguments(draft: Draft, item: PlanObject) -> list[str]:
     """All arguments but the name."""
     plan = draft.plan
     held = container(item)
-    level = item.relation("FREE-SURFACE-AT")
-    if held is not None and level is not None and level.value is not None:
-        volume: Sequence[float] = _in_the_end(plan, item, plan.object(held).size, level.value)
-        found = [f"fills={draft.handles[held]}", f"level={number(level.value)}"]
+    amount = item.registration.volume
+    if held is not None and (amount is not None or level(item) < math.inf):
+        high = level(item) if amount is None else None
+        volume: Sequence[float] = _in_the_end(plan, item, filled_box(plan.object(held), high, amount))
+        how = f"level={number(level(item))}" if amount is None else f"volume={number(amount)}"
+        found = [f"fills={draft.handles[held]}", how]
     else:
         volume = item.size
         found = [f"size={tuple_of(item.size)}", f"position={tuple_of(position(item))}"]
@@ -37,6 +46,9 @@ def arguments(draft: Draft, item: PlanObject) -> list[str]:
         found.append(f"velocity={tuple_of(item.velocity)}")
     if item.registration.viscosity is not None:
         found.append(f"viscosity={number(item.registration.viscosity)}")
+    for name in ("yield_stress", "flow_index"):
+        if (value := getattr(item.registration, name)) is not None:
+            found.append(f"{name}={number(value)}")
     if any(objective.kind == "fills" and objective.object == item.name for objective in plan.objectives):
         found.append(f"speed_of_sound={number(_sound(item))}")
     if item.density is not None:
@@ -48,11 +60,13 @@ def arguments(draft: Draft, item: PlanObject) -> list[str]:
     return found
 
 
-def _in_the_end(plan: Plan, item: PlanObject, hollow: Sequence[float], level: float) -> tuple[float, float, float]:
-    """The box that a fluid fills when taps have poured, at most all of its container [m]."""
-    x, y, z = hollow
+def _in_the_end(plan: Plan, item: PlanObject, box: Sequence[float]) -> tuple[float, float, float]:
+    """The box that a fluid fills when taps have poured, at most all of its tank [m]."""
+    x, y, level = box
     poured = sum(each.poured(plan.simulation.duration) for each in plan.openings if each.fluid == item.name)
-    return x, y, min(level + poured / (x * y), z)
+    vessel = vessel_of(plan, item)
+    rim = vessel.size[2] if poured and vessel is not None and vessel.size else math.inf
+    return x, y, min(level + poured / (x * y), rim)
 
 
 def _spacing(plan: Plan, item: PlanObject, volume: Sequence[float]) -> float:

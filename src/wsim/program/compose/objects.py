@@ -52,8 +52,9 @@ def _arguments(draft: Draft, item: PlanObject) -> list[str]:
 
 
 def _ordered(objects: Sequence[PlanObject]) -> list[PlanObject]:
-    """In the plan's order, but terrain first, and a fluid straight after the tank that it fills."""
+    """In the plan's order, but terrain first, and fluids straight after the tank that they fill, from below."""
     filling = [item for item in objects if item.primitive == "fluid" and fluids.container(item) is not None]
+    filling.sort(key=fluids.level)
     ordered = []
     for item in sorted(objects, key=lambda one: one.primitive != "terrain"):
         if item not in filling:

@@ -60,7 +60,7 @@ def itself(item: PlanObject, thing: Thing, cast: Cast) -> PlanObject | None:
         return None
     if any(beside.predicate == "under" and beside.ref is thing for one in cast.things for beside in one.beside):
         return None  # the layout takes a catalogue's thing for a box: a top on legs has room under it
-    if cast.pour is not None and cast.pour.vessel is thing:
+    if (cast.pour is not None and cast.pour.vessel is thing) or any(flow.vessel is thing for flow in cast.flows):
         return None  # water is poured into a tank, whose room the judge knows
     if item.pose is not None and (item.primitive != "tank" or any(item.pose.rotation_deg)):
         return None
@@ -89,9 +89,10 @@ def as_they_are(objectives: list[Objective], objects: list[PlanObject]) -> list[
     a seat or a board, below the highest point, that it is borne by what it stands on.
     """
     own = {item.name: item for item in objects if item.primitive == "asset"}
+    fluids = {item.name for item in objects if item.primitive == "fluid"}
     made = []
     for one in objectives:
-        vessel = _vessel(one)
+        vessel = _vessel(one) if one.object not in fluids else None  # a fluid is in it by all of its particles
         if vessel is not None and vessel not in own and one.object in own:
             made.append(_asked(one, StaysInside(object=one.object, ref=vessel, within=ON_FLOOR)))
         elif vessel in own and vessel is not None:

@@ -30,7 +30,7 @@ from wsim.plan.schema.formula_place import GoneBetween, Reaches, StaysWithin, Ti
 from wsim.plan.schema.nodes import Eventually, Finally, Then
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.lexicon import lexicon
-from wsim.rules.materials import GLASS_LOOK, WATER, material_named
+from wsim.rules.materials import GLASS_LOOK, material_named
 from wsim.rules.scenes.afloat import APRON, GAP, THINNEST, Block, Site, carries, site_of
 from wsim.rules.scenes.part import Part, tidy
 from wsim.rules.tokens import NotUnderstood
@@ -193,10 +193,11 @@ def _built(site: Site, cast: Cast, over: Thing) -> list[PlanObject]:
         state="static", pose=Pose(position=(0.0, 0.0, 0.0)), words=cast.tank or "",
     )  # fmt: skip
     rows = [Relation(predicate="PLACE-IN", ref="basin"), Relation(predicate="FREE-SURFACE-AT", value=site.level)]
-    water = PlanObject.proxy(
-        name="water", role="fluid", primitive="fluid", material=WATER, state="fluid", relations=rows,
-        registration=Registration(spacing=site.spacing), words=cast.water or "",
-    )  # fmt: skip
+    if cast.liquid.key != "water":
+        raise UserError(f"{cast.water!r}: the builtin planner lets vehicles cross water; leave the other liquid out")
+    water = cast.liquid.fluid(cast.water or "", rows).model_copy(
+        update={"registration": Registration(spacing=site.spacing)}
+    )
     block = PlanObject.proxy(
         name="block", role="rigid_body", primitive="box", size=site.block.size, material=site.block.material,
         pose=Pose(position=(0.0, 0.0, tidy(site.bottom + height / 2))), words=over.words,

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from wsim.defaults import GRAVITY
 from wsim.plan.layout.bodies import around
 from wsim.plan.layout.boxes import Box
-from wsim.plan.schema import CameraPlan, Contact, Cord, Joint, Objective, PlanObject, SchedulePlan, Vec3
+from wsim.plan.schema import CameraPlan, Contact, Cord, Joint, Objective, OpeningPlan, PlanObject, SchedulePlan, Vec3
 
 MOST_SPEED = 50.0  # that the prompt may give [m/s]
 DIRECTIONS: dict[str, Vec3] = {
@@ -29,6 +29,7 @@ class Part:
         joints: Between any of them.
         cords: What ties them.
         schedules: What happens by time.
+        openings: Where fluid comes in or leaves.
         contacts: Of pairs whose friction follows from none of their materials.
         objectives: What must happen to them.
         duration: That it takes [s].
@@ -48,6 +49,7 @@ class Part:
     joints: list[Joint] = field(default_factory=list)
     cords: list[Cord] = field(default_factory=list)
     schedules: list[SchedulePlan] = field(default_factory=list)
+    openings: list[OpeningPlan] = field(default_factory=list)
     contacts: list[Contact] = field(default_factory=list)
     objectives: list[Objective] = field(default_factory=list)
     duration: float = 0.0
@@ -68,6 +70,7 @@ class Part:
         self.joints += other.joints
         self.cords += other.cords
         self.schedules += other.schedules
+        self.openings += other.openings
         self.contacts += other.contacts
         self.objectives += other.objectives
         self.duration = max(self.duration, other.duration)

@@ -6,13 +6,15 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from wsim.defaults import FLUID_DENSITY, WALL
+from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.layout import extents
 from wsim.plan.schema import Material, Objective, PlanObject, Relation
 from wsim.rules.cast import Cast, Thing
-from wsim.rules.materials import GLASS_LOOK, WATER
-from wsim.rules.scenes.part import Part
+from wsim.rules.contents import note_liquid
+from wsim.rules.liquids import Liquid
+from wsim.rules.materials import GLASS_LOOK
+from wsim.rules.scenes.part import Part, tidy
 from wsim.rules.sizes import bodies, thickness
 
 LAYERS_FLOATING = 4.5  # particle spacings in the height of what floats, at least
@@ -46,7 +48,7 @@ def build_tank(cast: Cast, taken: set[str]) -> Part:
     Raises:
         UserError: more things than one tank holds.
     """
-    taken |= {"tank", "water"}
+    taken |= {"tank", cast.liquid.key}
     swimmers = [one for thing in cast.things if thing.place == "water" for one in _swimmers(thing, cast, taken)]
     spacing, inner, level = _dimensions(swimmers, cast)
     tank = PlanObject.proxy(
@@ -59,28 +61,18 @@ def build_tank(cast: Cast, taken: set[str]) -> Part:
         relations=[Relation(predicate="PLACE-ON-BASE")],
         words=cast.tank or "",
     )
-    water = PlanObject.proxy(
-        name="water",
-        role="fluid",
-        primitive="fluid",
-        material=WATER,
-        state="fluid",
-        relations=[
-            Relation(predicate="PLACE-IN", ref="tank"),
-            Relation(predicate="FREE-SURFACE-AT", value=level),
-        ],
-        words=cast.water or "",
-    )
-    objects = [tank, water]
+    rows = [Relation(predicate="PLACE-IN", ref="tank"), Relation(predicate="FREE-SURFACE-AT", value=level)]
+    water = cast.liquid.fluid(cast.water or "", rows)
+    objects, what = [tank, water], cast.liquid.words[0]
     gap = round(GAP_SPACINGS * spacing, 6)
     for left, swimmer in zip([None, *_row(swimmers)], _row(swimmers), strict=False):
         relations = [swimmer.relation]
         if left is not None:
             relations.append(Relation(predicate="FRONT-OF", ref=left.item.name, gap=gap))
         objects.append(swimmer.item.related(relations + swimmer.item.relations))
-    objectives = [_objective(swimmer) for swimmer in swimmers]
+    objectives = [_objective(swimmer, cast.liquid) for swimmer in swimmers]
     objectives.append(
-        Objective(kind="stays_inside", object="water", ref="tank", sentence="The water stays inside the tank.")
+        Objective(kind="stays_inside", object=water.name, ref="tank", sentence=f"The {what} stays inside the tank.")
     )
     tallest = max((extents(s.item, _lying(s.item))[2] for s in swimmers), default=0.14)
     duration = math.ceil(2 * DURATION * max(1.0, math.sqrt(tallest / 0.14))) / 2
@@ -102,15 +94,16 @@ def _lying(item: PlanObject) -> tuple[float, float, float]:
 def _swimmers(thing: Thing, cast: Cast, taken: set[str]) -> list[Swimmer]:
     items = bodies(thing, cast, taken)
     assert items[0].material is not None
-    end = _end(thing, items[0].material, items[0].density or FLUID_DENSITY, cast)
+    end = _end(thing, items[0].material, items[0].density or cast.liquid.material.density, cast)
     start = _start(thing, end, cast)
     return [Swimmer(thing, item, end, start) for item in items]
 
 
 def _end(thing: Thing, material: Material, density: float, cast: Cast) -> Literal["floats", "sinks", "submerged"]:
     """What was asked for, even if it cannot happen; the material decides where nothing was."""
-    ratio = f"{material.name}, {density:g} kg/m^3, in water of {FLUID_DENSITY:g} kg/m^3"
-    light = density < FLUID_DENSITY
+    liquid = cast.liquid.material.density
+    ratio = f"{material.name}, {density:g} kg/m^3, in {cast.liquid.words[0]} of {liquid:g} kg/m^3"
+    light = density < liquid
     if "float" in thing.does:
         if not light:
             cast.assume(
@@ -130,12 +123,12 @@ def _end(thing: Thing, material: Material, density: float, cast: Cast) -> Litera
 
 def _start(thing: Thing, end: str, cast: Cast) -> Relation:
     if "drop" in thing.does:
-        height = cast.drop_height(thing, DROP_HEIGHT, "the water")
-        return Relation(predicate="SPAWNED-ABOVE", ref="water", value=height)
+        height = cast.drop_height(thing, DROP_HEIGHT, f"the {cast.liquid.words[0]}")
+        return Relation(predicate="SPAWNED-ABOVE", ref=cast.liquid.key, value=height)
     if end == "floats":
-        return Relation(predicate="FLOATS-AT-SURFACE", ref="water", gap=START_GAP)
-    cast.assume(thing.words, f"let go {SINK_GAP:g} m above the water", "the prompt does not say where it comes from")
-    return Relation(predicate="SPAWNED-ABOVE", ref="water", value=SINK_GAP)
+        return Relation(predicate="FLOATS-AT-SURFACE", ref=cast.liquid.key, gap=START_GAP)
+    cast.assume(thing.words, f"let go {SINK_GAP:g} m above the surface", "the prompt does not say where it comes from")
+    return Relation(predicate="SPAWNED-ABOVE", ref=cast.liquid.key, value=SINK_GAP)
 
 
 def _row(swimmers: list[Swimmer]) -> list[Swimmer]:
@@ -147,59 +140,121 @@ def _row(swimmers: list[Swimmer]) -> list[Swimmer]:
 
 
 def _dimensions(swimmers: list[Swimmer], cast: Cast) -> tuple[float, tuple[float, float, float], float]:
-    """Particle spacing, the tank's inner size and the water's level [m]: whole numbers of spacings."""
-    boxes = [extents(s.item, _lying(s.item)) for s in swimmers] or [(0.2, 0.2, 0.14)]
-    tallest = max(box[2] for box in boxes)
-    wanted = _spacing(swimmers, tallest)
-    spacing = wanted
+    """Particle spacing, the tank's inner size and the liquid's level [m]: whole numbers of spacings."""
+    boxes = [extents(s.item, _lying(s.item)) for s in swimmers] or [_empty(cast)]
+    wanted = _spacing(swimmers, max(box[2] for box in boxes), cast.liquid)
+    spacing, name = wanted, cast.liquid.words[0]
     while True:
-        gap = GAP_SPACINGS * spacing
-        depth = _up(DEPTH_WIDTHS * max(box[1] for box in boxes), spacing)
-        length = _up(max(sum(box[0] for box in boxes) + gap * (len(boxes) + 1), 1.2 * depth), spacing)
-        level = _up(LEVEL_HEIGHTS * tallest, spacing)
+        length, depth, level = _basin(boxes, spacing, cast)
         count = length * depth * level / spacing**3
         if count <= MOST_PARTICLES:
             break
         spacing = round(spacing * 1.1, 4)
     if spacing > 1.5 * wanted:
-        named = ", ".join(dict.fromkeys(repr(swimmer.thing.words) for swimmer in swimmers))
+        named = ", ".join(dict.fromkeys(repr(swimmer.thing.words) for swimmer in swimmers)) or repr(cast.water)
         raise UserError(
-            f"the tank for {named} would need {round(length * depth * level / wanted**3):,} particles of water; "
+            f"the tank for {named} would need {round(length * depth * level / wanted**3):,} particles of {name}; "
             f"the builtin planner uses up to {MOST_PARTICLES:,}: ask for fewer things, or sizes closer to each other"
         )
     if spacing > wanted:
-        cast.assume("water", f"particles {spacing:g} m apart", f"{wanted:g} m would take more than {MOST_PARTICLES:,}")
+        cast.assume(name, f"particles {spacing:g} m apart", f"{wanted:g} m would take more than {MOST_PARTICLES:,}")
     # Everything that is heavier than its draft allows counts as fully under water: the rise is then an upper bound.
-    rise = sum((s.item.volume or 0.0) * min(1.0, _ratio(s.item)) for s in swimmers) / (length * depth)
-    height = math.ceil((level + rise + FREEBOARD_SPACINGS * spacing) / 0.05 - 1e-9) * 0.05
-    inner = (length, depth, round(height, 6))
-    cast.assume(
-        "tank", f"{length:g} x {depth:g} x {inner[2]:g} m inside", "the prompt gives no size; it fits the things"
-    )
-    cast.assume("water", f"{level:g} m deep", f"{LEVEL_HEIGHTS:g} times the tallest thing")
-    cast.assume(
-        "water", f"about {round(count):,} particles, {spacing:g} m apart", "enough layers in the thinnest thing"
-    )
-    if cast.water is None:
-        cast.assume("tank", "holds water", "the prompt names a tank, or what floats or sinks, but no water")
-    if cast.tank is None:
-        cast.assume("water", "in a glass tank", "the prompt names no vessel")
+    rise = sum((s.item.volume or 0.0) * min(1.0, _ratio(s.item, cast.liquid)) for s in swimmers) / (length * depth)
+    free = rise + FREEBOARD_SPACINGS * spacing
+    if cast.share:
+        level = max(level, _up(free * cast.share / (1.0 - cast.share), spacing))
+        height = tidy(level / cast.share)
+    else:
+        height = round(math.ceil((level + free) / 0.05 - 1e-9) * 0.05, 6)
+    inner = (length, depth, height)
+    _check_afloat(swimmers, level, cast)
+    _note(inner, level, cast)
+    count = length * depth * level / spacing**3
+    cast.assume(name, f"about {round(count):,} particles, {spacing:g} m apart", "enough layers in the thinnest thing")
     return spacing, inner, level
 
 
-def _spacing(swimmers: list[Swimmer], tallest: float) -> float:
+def _empty(cast: Cast) -> tuple[float, float, float]:
+    """The box of nothing, round which a tank is as large as what it is said to hold asks for [m]."""
+    held = cast.filled
+    x, y, z = (0.2, 0.2, 0.14)
+    if held is not None and held.volume is not None:
+        length, depth, level = _basin([(x, y, z)], 1e-4, Cast())
+        grown = (held.volume / (length * depth * level)) ** (1 / 3)
+    else:
+        grown = held.level / (LEVEL_HEIGHTS * z) if held is not None and held.level is not None else 1.0
+    return x * grown, y * grown, z * grown
+
+
+def _basin(boxes: list[tuple[float, float, float]], spacing: float, cast: Cast) -> tuple[float, float, float]:
+    """A tank's length and width, and the level in it [m], for what is in it and as much as is said to be.
+
+    Raises:
+        UserError: That is too little.
+    """
+    gap = GAP_SPACINGS * spacing
+    depth = _up(DEPTH_WIDTHS * max(box[1] for box in boxes), spacing)
+    length = _up(max(sum(box[0] for box in boxes) + gap * (len(boxes) + 1), 1.2 * depth), spacing)
+    level = _up(LEVEL_HEIGHTS * max(box[2] for box in boxes), spacing)
+    held = cast.filled
+    if held is not None and held.level is not None:
+        level = tidy(held.level)
+    if held is None or held.volume is None:
+        return length, depth, level
+    least = length * depth * max(box[2] for box in boxes)
+    if held.volume < 0.9 * least:
+        raise UserError(
+            f"{cast.water!r}: {1000 * held.volume:g} litres are too little in a tank for what is in it; it takes "
+            f"{1000 * least:.3g} or more"
+        )
+    grown = math.sqrt(max(1.0, held.volume / (length * depth * level)))
+    depth, level = _up(depth * grown, spacing), min(level, _up(held.volume / (length * depth), spacing))
+    return round(held.volume / (depth * level) / spacing) * spacing, depth, level
+
+
+def _check_afloat(swimmers: list[Swimmer], level: float, cast: Cast) -> None:
+    """Refuse what would stand on the floor in so little of the liquid.
+
+    Raises:
+        UserError: Something would.
+    """
+    for one in swimmers:
+        draft = extents(one.item, _lying(one.item))[2] * min(1.0, _ratio(one.item, cast.liquid))
+        if one.end == "floats" and draft > 0.9 * level:
+            raise UserError(
+                f"{one.thing.words!r}: it draws {draft:.3g} m, and would stand on the floor of {level:g} m of "
+                f"{cast.liquid.words[0]}; give more"
+            )
+
+
+def _note(inner: tuple[float, float, float], level: float, cast: Cast) -> None:
+    """What was left open of a tank and what is in it."""
+    liquid, name, held = cast.liquid, cast.liquid.words[0], cast.filled
+    said = held is not None and (held.level is not None or held.volume is not None)
+    fits = "the prompt gives no size; it fits the things"
+    cast.assume("tank", f"{inner[0]:g} x {inner[1]:g} x {inner[2]:g} m inside", fits)
+    if not said:
+        cast.assume(name, f"{level:g} m deep", f"{LEVEL_HEIGHTS:g} times the tallest thing")
+    if cast.water is None:
+        cast.assume("tank", "holds water", "the prompt names a tank, or what floats or sinks, but no water")
+    if cast.tank is None:
+        cast.assume(name, "in a glass tank", "the prompt names no vessel")
+    note_liquid(liquid, cast)
+
+
+def _spacing(swimmers: list[Swimmer], tallest: float, liquid: Liquid) -> float:
     limits = [tallest / LAYERS_DEPTH]
     for swimmer in swimmers:
         across = thickness(swimmer.item)
         if swimmer.end == "floats":
-            limits += [across / LAYERS_FLOATING, _ratio(swimmer.item) * across / LAYERS_DRAFT]
+            limits += [across / LAYERS_FLOATING, _ratio(swimmer.item, liquid) * across / LAYERS_DRAFT]
         else:
             limits.append(across / LAYERS_SINKING)
     return math.floor(min(limits) * 1000 + 1e-6) / 1000 or 0.001
 
 
-def _ratio(item: PlanObject) -> float:
-    return (item.density or FLUID_DENSITY) / FLUID_DENSITY
+def _ratio(item: PlanObject, liquid: Liquid) -> float:
+    return (item.density or liquid.material.density) / liquid.material.density
 
 
 def _up(length: float, spacing: float) -> float:
@@ -207,10 +262,10 @@ def _up(length: float, spacing: float) -> float:
     return round(math.ceil(length / spacing - 1e-6) * spacing, 6)
 
 
-def _objective(swimmer: Swimmer) -> Objective:
-    name = swimmer.item.name
+def _objective(swimmer: Swimmer, liquid: Liquid) -> Objective:
+    name, what = swimmer.item.name, liquid.words[0]
     if swimmer.end == "floats":
-        return Objective(kind="floats", object=name, ref="water", sentence=f"{name} floats on the water.")
+        return Objective(kind="floats", object=name, ref=liquid.key, sentence=f"{name} floats on the {what}.")
     if swimmer.end == "submerged":
-        return Objective(kind="submerged", object=name, ref="water", sentence=f"{name} is under water.")
+        return Objective(kind="submerged", object=name, ref=liquid.key, sentence=f"{name} is under {what}.")
     return Objective(kind="rests_on", object=name, ref="tank", sentence=f"{name} sinks and rests on the tank's floor.")

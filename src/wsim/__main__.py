@@ -1,0 +1,5 @@
+"""`python -m wsim` is `wsim`."""
+
+from wsim.cli import main
+
+main()
