@@ -76,7 +76,7 @@ def test_what_leaves_through_the_floor_is_not(told: Recording) -> None:
 
 def test_what_misses_the_bowl_falls_for_ever_without_a_ground(tmp_path: Path) -> None:
     """Nothing that stands is near at the start."""
-    assert "CheckLeak" in failed(run(poured(tmp_path, x=1.0, ground=False, seconds=0.6)))
+    assert "CheckLeak" in failed(run(poured(tmp_path, x=1.0, ground=False, seconds=0.9)))
 
 
 @pytest.mark.parametrize("turn", [0.0, 25.0, 110.0])

@@ -42,6 +42,6 @@ def test_what_is_poured_over_the_rim_of_one_that_moves_has_not() -> None:
 def test_what_a_tap_pours_strays_once_it_has_been_inside(moves: bool) -> None:
     nowhere, over = (math.nan, math.nan, math.nan), (0.3, 0.0, 0.4)
     runs_over = (nowhere, over, (0.0, 0.0, 0.25), (0.0, 0.0, 0.1), (0.05, 0.0, 0.21), (0.14, 0.0, 0.1))
-    leaks = (nowhere, over, (0.0, 0.0, 0.25), (0.0, 0.0, 0.1), (0.08, 0.0, 0.08), (0.14, 0.0, 0.06))
+    leaks = (nowhere, over, (0.0, 0.0, 0.25), (0.0, 0.0, 0.1), (0.04, 0.0, 0.07), (0.14, 0.0, 0.06))
     assert of_way(*runs_over, moves=moves, tapped=True) == [False] * 6
     assert of_way(*leaks, moves=moves, tapped=True) == [False] * 5 + [True]

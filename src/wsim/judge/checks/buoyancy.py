@@ -117,7 +117,9 @@ class CheckResolved(Check):
             return []
         fluid = max(evidence.world.fluids, key=lambda each: each.spacing)
         weight = evidence.motion.mass * evidence.gravity
-        wet = np.flatnonzero(np.abs(pushed) > self.share * weight)
+        holders = {each.container for each in evidence.world.fluids}  # whose walls are as deep as the fluid sees
+        beside = np.array([body.prim not in holders for body in evidence.world.bodies], dtype=bool)
+        wet = np.flatnonzero((np.abs(pushed) > self.share * weight) & beside)
         if not len(wet):
             return []
         thick = np.array([evidence.solid(int(i)).smallest for i in wet]) / fluid.spacing

@@ -54,7 +54,7 @@ def strayed(
         places = rotate(conjugate(pose[t, 3:]), points - pose[t, :3])
         found[t] = (places @ walls[:, :3].T > walls[:, 3] + slack).any(axis=1)
         if moves or tapped:
-            way = 0.0 if before is None else np.linalg.norm(places - before, axis=1)
+            way = 0.0 if before is None else np.nan_to_num(np.linalg.norm(places - before, axis=1))
             near = (places @ lids[:, :3].T - lids[:, 3]).max(axis=1, initial=-np.inf) > -slack - way
             if hollow is not None:
                 poured &= ~hollow.holds(rotate(pose[0, 3:], np.nan_to_num(places, nan=1e9)))
