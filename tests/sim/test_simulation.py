@@ -234,10 +234,10 @@ def test_unknown_device_is_named(tmp_path):
         Simulation(stage_of(tmp_path, tank), device="cuda:7")
 
 
-def test_fluids_that_differ_are_refused(tmp_path):
+def test_fluids_of_different_spacings_are_refused(tmp_path):
     def build(scene):
-        for k, density in enumerate((1000.0, 800.0)):
-            scene.fluid(f"fluid_{k}", size=(0.2, 0.2, 0.2), position=(k, 0.0, 0.2), spacing=0.05, density=density)
+        for k, spacing in enumerate((0.05, 0.04)):
+            scene.fluid(f"fluid_{k}", size=(0.2, 0.2, 0.2), position=(k, 0.0, 0.2), spacing=spacing)
 
-    with pytest.raises(UserError, match="density"):
+    with pytest.raises(UserError, match="spacing = 0.04 differs"):
         Simulation(stage_of(tmp_path, build), device="cpu")
