@@ -239,5 +239,5 @@ def test_fluids_of_different_spacings_are_refused(tmp_path):
         for k, spacing in enumerate((0.05, 0.04)):
             scene.fluid(f"fluid_{k}", size=(0.2, 0.2, 0.2), position=(k, 0.0, 0.2), spacing=spacing)
 
-    with pytest.raises(UserError, match="spacing = 0.04 differs"):
+    with pytest.raises(UserError, match=r"spacing = 0\.04 differs"):
         Simulation(stage_of(tmp_path, build), device="cpu")
