@@ -35,6 +35,9 @@ NO_SHAPE = wp.constant(wp.uint32(0xFFFFFFF0))  # shape indices from here on are 
 UNSEEN = wp.constant(0.02)  # contrast that the eye no longer sees (H. Koschmieder, 1924)
 EDGE_SHINE = wp.constant(0.3)  # share of the sky's light that an edge shows
 MURKY = wp.constant(0.5)  # share of light that one particle of a fluid stops, from which on rays in it are not bent
+# Upright part of a surface's normal from which on rays are bent there: the rounded rim that particles have at a body or
+# a wall is no water's, and would show what floats with bulges.
+LEVEL = wp.constant(0.97)
 ELSEWHERE = wp.constant(1.0e6)  # [m] over the world: a ray that has nothing to look for starts there, upwards
 
 
@@ -143,7 +146,7 @@ def through_media(
                 reflected = wp.cw_mul(media.fluid_color[fluid.medium], day)
             light.seen += wp.cw_mul(light.through, reflected) * share
             light.through = light.through * (1.0 - share)
-            enters = before.ior == IOR_AIR and ahead.ior == IOR_WATER
+            enters = before.ior == IOR_AIR and ahead.ior == IOR_WATER and wp.abs(before.normal[2]) > LEVEL
             if bends and enters and not wet and ahead.opaque < MURKY:
                 light.fluid_at = before.t * wp.dot(direction, axis)
                 return bent_at(light, before, ahead.ior)
