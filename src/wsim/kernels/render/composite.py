@@ -6,9 +6,9 @@ fluid that hides what is in it, as milk, is so lit at its face, as a solid is, a
 two media of different refractive index reflects the sky by Schlick's approximation of Fresnel's equations (C. Schlick,
 "An Inexpensive BRDF Model for Physically-based Rendering", 1994).
 
-Where a ray comes out of the air into a fluid that light fills, it is bent by Snell's law, once. What it meets from
-there on only another look at the opaque shapes can tell, so that a picture is made in two passes, the first up to where
-rays bend. Where a ray leaves a fluid, or passes between it and glass, it is not bent: the walls of a real tank mirror
+Where a ray comes out of the air through a level surface into a fluid that light fills, it is bent by Snell's law, once.
+What it meets from there on only another look at the opaque shapes can tell, so that a picture is made in two passes,
+the first up to where rays bend. Where a ray leaves a fluid, or passes between it and glass, it is not bent: the walls of a real tank mirror
 what is in it, and each body would be seen several times.
 
 All colours are linear RGB.
