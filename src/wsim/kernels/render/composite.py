@@ -8,8 +8,8 @@ two media of different refractive index reflects the sky by Schlick's approximat
 
 Where a ray comes out of the air through a level surface into a fluid that light fills, it is bent by Snell's law, once.
 What it meets from there on only another look at the opaque shapes can tell, so that a picture is made in two passes,
-the first up to where rays bend. Where a ray leaves a fluid, or passes between it and glass, it is not bent: the walls of a real tank mirror
-what is in it, and each body would be seen several times.
+the first up to where rays bend. Where a ray leaves a fluid, or passes between it and glass, it is not bent: the walls
+of a real tank mirror what is in it, and each body would be seen several times.
 
 All colours are linear RGB.
 """
